@@ -1,0 +1,162 @@
+//! A uniform grid that wraps around: ball queries in time proportional to what they find.
+//!
+//! Cells repeat with a period of a power of two along each axis, so a grid of about as many cells as points serves a
+//! cloud of any extent, and no two cells of one query fall together. A query visits every entry whose cell it touches,
+//! far ones of the same residue too: callers test the distance. So neither the cell size nor the period can change a
+//! result, only the time. Twin: `shaders/shared/grid.wgsl`.
+
+use glam::{IVec3, Vec3};
+
+/// Geometry of a grid: everything a query needs besides the cells themselves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GridShape {
+    /// Corner of cell (0, 0, 0).
+    pub origin: Vec3,
+    /// Edge length of a cell.
+    pub cell: f32,
+    /// log2 of the period along x, y and z.
+    pub bits: [u32; 3],
+}
+
+/// Entries sorted by cell.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    /// Where the cells are.
+    pub shape: GridShape,
+    /// First entry of each cell, and one more: the number of entries.
+    pub starts: Vec<u32>,
+    /// Entries by cell, ascending within one.
+    pub items: Vec<u32>,
+}
+
+/// Widens a query a little, so that rounding at a cell's face can't lose an entry.
+const SLACK: f32 = 1.0 + 1e-4;
+
+impl GridShape {
+    /// A grid for points of these radii: cells as large as the mean radius, about two cells a point.
+    pub fn fit(positions: &[Vec3], radii: &[f32]) -> Self {
+        let low = positions.iter().copied().reduce(Vec3::min).unwrap_or(Vec3::ZERO);
+        let high = positions.iter().copied().reduce(Vec3::max).unwrap_or(Vec3::ZERO);
+        let extent = (high - low).max_element();
+        let mean = radii.iter().map(|&r| f64::from(r)).sum::<f64>() / radii.len().max(1) as f64;
+        // 2^20 cells along the longest side keep cell coordinates exact in f32.
+        let cell = (mean as f32).max(extent / 1_048_576.0).max(1e-30);
+        Self::with_cell(low, cell, positions.len())
+    }
+
+    /// A grid of that cell size and about two cells a point.
+    pub fn with_cell(origin: Vec3, cell: f32, points: usize) -> Self {
+        let total = (2 * points.max(32)).next_power_of_two().trailing_zeros().min(27);
+        Self { origin, cell, bits: [total.div_ceil(3), (total + 1) / 3, total / 3] }
+    }
+
+    /// Number of cells in a period.
+    pub fn cells(&self) -> usize {
+        1 << (self.bits[0] + self.bits[1] + self.bits[2])
+    }
+
+    /// Coordinates of the cell that holds `x`, before wrapping.
+    fn coordinates(&self, x: Vec3) -> IVec3 {
+        ((x - self.origin) * (1.0 / self.cell)).floor().as_ivec3()
+    }
+
+    /// Index of a cell: its coordinates wrapped, x running fastest.
+    fn index(&self, c: IVec3) -> usize {
+        let wrap = |v: i32, bits: u32| v as usize & ((1 << bits) - 1);
+        let [bx, by, bz] = self.bits;
+        wrap(c.x, bx) | wrap(c.y, by) << bx | wrap(c.z, bz) << (bx + by)
+    }
+
+    /// Index of the cell that holds `x`.
+    pub fn cell_of(&self, x: Vec3) -> usize {
+        self.index(self.coordinates(x))
+    }
+}
+
+impl Grid {
+    /// Sorts the positions into cells; entries are indices into `positions`.
+    pub fn build(shape: GridShape, positions: impl Iterator<Item = (u32, Vec3)> + Clone) -> Self {
+        let mut starts = vec![0u32; shape.cells() + 1];
+        let mut count = 0;
+        for (_, x) in positions.clone() {
+            starts[shape.cell_of(x) + 1] += 1;
+            count += 1;
+        }
+        for i in 1..starts.len() {
+            starts[i] += starts[i - 1];
+        }
+        let mut next = starts.clone();
+        let mut items = vec![0; count];
+        for (id, x) in positions {
+            let slot = &mut next[shape.cell_of(x)];
+            items[*slot as usize] = id;
+            *slot += 1;
+        }
+        Self { shape, starts, items }
+    }
+
+    /// Calls `visit` once for each entry of every cell that the ball touches: a superset of those inside.
+    pub fn visit_ball(&self, center: Vec3, radius: f32, mut visit: impl FnMut(u32)) {
+        let reach = Vec3::splat(radius * SLACK + self.shape.cell * 1e-4);
+        let low = self.shape.coordinates(center - reach);
+        // A query wider than the period would meet its own cells again.
+        let last = IVec3::from_array(self.shape.bits.map(|b| (1 << b) - 1));
+        let high = self.shape.coordinates(center + reach).min(low.saturating_add(last));
+        for z in low.z..=high.z {
+            for y in low.y..=high.y {
+                self.visit_row(low.with_y(y).with_z(z), high.x, &mut visit);
+            }
+        }
+    }
+
+    /// Visits the cells from `first` to `last_x` along x: one run of entries, or two where the period ends between.
+    fn visit_row(&self, first: IVec3, last_x: i32, visit: &mut impl FnMut(u32)) {
+        let begin = self.shape.index(first);
+        let end = self.shape.index(first.with_x(last_x));
+        let mut run = |from: usize, to: usize| {
+            for &item in &self.items[self.starts[from] as usize..self.starts[to + 1] as usize] {
+                visit(item);
+            }
+        };
+        if begin <= end {
+            run(begin, end);
+        } else {
+            let row = (1 << self.shape.bits[0]) - 1;
+            run(begin, begin | row);
+            run(end & !row, end);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ball_queries_find_what_brute_force_finds_and_nothing_twice() {
+        let mut random = fastrand::Rng::with_seed(7);
+        for scale in [1e-6f32, 1.0, 1e6] {
+            let mut coordinate = || (random.f32() - 0.3) * scale;
+            let positions: Vec<Vec3> =
+                (0..700).map(|_| Vec3::new(coordinate(), coordinate(), coordinate())).collect();
+            let shape = GridShape::fit(&positions, &vec![0.1 * scale; positions.len()]);
+            let grid =
+                Grid::build(shape, positions.iter().enumerate().map(|(i, &x)| (i as u32, x)));
+            // The last radius spans more than one period along every axis.
+            for (center, radius) in [(3, 0.05), (10, 0.3), (11, 100.0)] {
+                let (center, radius) = (positions[center], radius * scale);
+                let inside = |i: u32| (positions[i as usize] - center).length() <= radius;
+                let mut found = Vec::new();
+                grid.visit_ball(center, radius, |i| found.push(i));
+                let visits = found.len();
+                found.sort_unstable();
+                found.dedup();
+                assert_eq!(visits, found.len(), "an entry was visited twice");
+                found.retain(|&i| inside(i));
+                let expected: Vec<u32> =
+                    (0..positions.len() as u32).filter(|&i| inside(i)).collect();
+                assert_eq!(found, expected, "scale {scale}, radius {radius}");
+            }
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! Clouds of oriented points: the data that the reference and the GPU engine share.
+//!
+//! This crate knows files, attributes, the uniform grid and the parameters of the refinement. It knows neither the
+//! algorithm nor a GPU.
+
+mod grid;
+mod params;
+pub mod ply;
+mod point_set;
+pub mod shapes;
+
+pub use glam::Vec3;
+pub use glam::{DVec3, UVec3};
+pub use grid::{Grid, GridShape};
+pub use params::{Neighborhood, ParamError, RefineParams};
+pub use point_set::{Attribute, Interpolation, Invalid, PointSet, Values};

@@ -1,0 +1,87 @@
+//! Parameters of the refinement, under the paper's symbols.
+
+use std::f32::consts::PI;
+
+/// Which one-ring neighbourhood is taken (section 4).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Neighborhood {
+    /// `N^g` (section 4.2): badness after the geodesic projection, for any sampling.
+    #[default]
+    Accurate,
+    /// `N^f` (section 4.1): badness at the points themselves, for well-sampled clouds.
+    Fuzzy,
+}
+
+/// Parameters of the refinement. All are free of scale; the defaults fit every cloud.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RefineParams {
+    /// Number of refinement steps; each multiplies the points by about 3. Default 1.
+    pub levels: u32,
+    /// Which neighbourhood; `simplified` overrides it.
+    pub neighborhood: Neighborhood,
+    /// The four simplifications of section 7: Euclidean distance, plain angle, `N^f`, displacement after insertion.
+    pub simplified: bool,
+    /// Tolerance angle of the fuzzy planes in radians (section 4.1), in (0, π/2]. Default π/6.
+    pub theta_f: f32,
+    /// Largest angle of a complete new neighbourhood in radians (section 5), in (0, π). Default 89°: regular grids tie
+    /// at the paper's π/2.
+    pub theta_c: f32,
+    /// Share of the radius within which a new point is a new neighbour (section 5), in (0, 1]. Default 1/√3.
+    pub lambda1: f32,
+    /// Share of a new point's radius that is its discard sphere (eq. 11), in [0, 1]. Default 1/2.
+    pub lambda2: f32,
+}
+
+impl Default for RefineParams {
+    fn default() -> Self {
+        Self {
+            levels: 1,
+            neighborhood: Neighborhood::Accurate,
+            simplified: false,
+            theta_f: PI / 6.0,
+            theta_c: 89.0 * PI / 180.0,
+            lambda1: 0.577_350_26,
+            lambda2: 0.5,
+        }
+    }
+}
+
+/// A parameter outside its range.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{name} is {value}, outside {range}")]
+pub struct ParamError {
+    /// Name of the parameter.
+    pub name: &'static str,
+    /// Its value.
+    pub value: f32,
+    /// The range that it must lie in.
+    pub range: &'static str,
+}
+
+impl RefineParams {
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    /// The first parameter that is out of its range.
+    pub fn validate(&self) -> Result<(), ParamError> {
+        let check = |ok: bool, name, value, range| {
+            if ok { Ok(()) } else { Err(ParamError { name, value, range }) }
+        };
+        // NaN fails every comparison, so it is caught here too.
+        check(self.levels <= 20, "levels", self.levels as f32, "0 to 20")?;
+        check(
+            self.theta_f > 0.0 && self.theta_f <= PI / 2.0,
+            "theta_f",
+            self.theta_f,
+            "(0, π/2] radians",
+        )?;
+        check(self.theta_c > 0.0 && self.theta_c < PI, "theta_c", self.theta_c, "(0, π) radians")?;
+        check(self.lambda1 > 0.0 && self.lambda1 <= 1.0, "lambda1", self.lambda1, "(0, 1]")?;
+        check((0.0..=1.0).contains(&self.lambda2), "lambda2", self.lambda2, "[0, 1]")
+    }
+
+    /// The neighbourhood that is used: `simplified` asks for the fuzzy one.
+    pub fn effective_neighborhood(&self) -> Neighborhood {
+        if self.simplified { Neighborhood::Fuzzy } else { self.neighborhood }
+    }
+}
