@@ -7,6 +7,7 @@ mod grid;
 mod params;
 pub mod ply;
 mod point_set;
+mod refined;
 pub mod shapes;
 
 pub use glam::Vec3;
@@ -14,3 +15,4 @@ pub use glam::{DVec3, UVec3};
 pub use grid::{Grid, GridShape};
 pub use params::{Neighborhood, ParamError, RefineParams};
 pub use point_set::{Attribute, Interpolation, Invalid, PointSet, Values};
+pub use refined::{LevelReport, Progress, Refined};

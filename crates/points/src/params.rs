@@ -80,6 +80,11 @@ impl RefineParams {
         check((0.0..=1.0).contains(&self.lambda2), "lambda2", self.lambda2, "[0, 1]")
     }
 
+    /// Sine of `theta_f`, through f64 so that every system library rounds it alike.
+    pub fn sin_theta_f(&self) -> f32 {
+        f64::from(self.theta_f).sin() as f32
+    }
+
     /// The neighbourhood that is used: `simplified` asks for the fuzzy one.
     pub fn effective_neighborhood(&self) -> Neighborhood {
         if self.simplified { Neighborhood::Fuzzy } else { self.neighborhood }

@@ -1,0 +1,72 @@
+//! What a refinement returns, whichever backend ran it.
+
+use crate::PointSet;
+use std::time::Duration;
+
+/// A refined cloud with the origin of every new point.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Refined {
+    /// The input points, first and unchanged but for their radii, then the new points level by level.
+    pub points: PointSet,
+    /// The corners of the triangle of each new point, earlier points all: entry 0 belongs to the first new point.
+    pub parents: Vec<[u32; 3]>,
+    /// Number of points at each level: entry 0 is the input, the last entry is all of them.
+    pub level_sizes: Vec<usize>,
+    /// What happened at each refinement step.
+    pub reports: Vec<LevelReport>,
+}
+
+/// Measures of one refinement step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LevelReport {
+    /// Points before the step.
+    pub points_in: usize,
+    /// Points after the step.
+    pub points_out: usize,
+    /// Sum over all points of the size of the Euclidean neighbourhood `N^E` (eq. 7).
+    pub ball_neighbors: u64,
+    /// Sum over all points of the size of the one-ring `N_p`: the number of triangle fan corners.
+    pub ring_neighbors: u64,
+    /// Number of classes that the conflict graph was coloured with.
+    pub classes: usize,
+    /// Points without any one-ring: they have no neighbour that passed, so nothing is inserted around them.
+    pub isolated: usize,
+    /// Time by stage, in the order of the stages.
+    pub stages: Vec<(&'static str, Duration)>,
+}
+
+impl Refined {
+    /// The level of each point: 0 for input points, `l` for those that step `l` inserted.
+    pub fn levels(&self) -> Vec<u8> {
+        let mut levels = Vec::with_capacity(self.points.len());
+        for (level, &size) in self.level_sizes.iter().enumerate() {
+            levels.resize(size, level as u8);
+        }
+        levels
+    }
+}
+
+impl LevelReport {
+    /// Points after the step for each point before it.
+    pub fn growth(&self) -> f64 {
+        self.points_out as f64 / self.points_in.max(1) as f64
+    }
+
+    /// Time of the whole step.
+    pub fn duration(&self) -> Duration {
+        self.stages.iter().map(|(_, t)| *t).sum()
+    }
+}
+
+/// Where a refinement stands: passed to progress callbacks at the start of each stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// The step that runs, from 1.
+    pub level: u32,
+    /// Number of steps.
+    pub levels: u32,
+    /// Name of the stage that starts.
+    pub stage: &'static str,
+    /// Points before the step.
+    pub points: usize,
+}

@@ -1,0 +1,109 @@
+//! Candidates `L_p` (section 5, eq. 12): one for each triangle of each fan. Twin: `shaders/candidates.wgsl`.
+
+use crate::math::TAU;
+use crate::neighborhood::Rings;
+use crate::pn_triangle;
+use crate::{Level, NO_POINT};
+use glam::Vec3;
+use rayon::prelude::*;
+use surfine_points::RefineParams;
+
+/// A fan triangle needs a gap below π(1 - 1e-4) radians: at π the fan has no triangle there.
+const WIDEST_GAP: f32 = 3.141_278_5;
+
+/// The possible new points of all fans, one for each ring entry (slot).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Candidates {
+    /// Position during this step: displaced by φ, or the centre of gravity if `simplified`.
+    pub positions: Vec<Vec3>,
+    /// Normal: of the curved triangle, or of the flat one if `simplified`.
+    pub normals: Vec<Vec3>,
+    /// `ρ`: largest distance to the three corners, or -1 where the slot holds no candidate.
+    pub rho: Vec<f32>,
+    /// The point whose fan holds the slot.
+    pub owners: Vec<u32>,
+}
+
+impl Candidates {
+    /// Whether the slot holds a candidate.
+    pub fn exists(&self, slot: usize) -> bool {
+        self.rho[slot] > 0.0
+    }
+}
+
+/// A slot that holds no candidate.
+const NONE: (Vec3, Vec3, f32) = (Vec3::ZERO, Vec3::ZERO, -1.0);
+
+/// Computes the candidates of every fan.
+pub fn candidates(level: &Level, rings: &Rings, params: &RefineParams) -> Candidates {
+    let fans: Vec<Vec<(Vec3, Vec3, f32)>> = (0..level.len())
+        .into_par_iter()
+        .map(|p| {
+            let ring = rings.ring(p);
+            (0..ring.len()).map(|i| candidate(level, rings, params, p, i)).collect()
+        })
+        .collect();
+    let mut result = Candidates::default();
+    for (p, fan) in fans.into_iter().enumerate() {
+        for (position, normal, rho) in fan {
+            result.positions.push(position);
+            result.normals.push(normal);
+            result.rho.push(rho);
+            result.owners.push(p as u32);
+        }
+    }
+    result
+}
+
+/// Position, normal and ρ of the candidate of a point's ring entries `i` and `i + 1`.
+fn candidate(
+    level: &Level,
+    rings: &Rings,
+    params: &RefineParams,
+    p: usize,
+    i: usize,
+) -> (Vec3, Vec3, f32) {
+    let Some(triangle) = fan_triangle(rings, p, i) else { return NONE };
+    let corners = triangle.map(|c| level.corner(c));
+    let position = if params.simplified {
+        pn_triangle::center_of_gravity(corners)
+    } else {
+        pn_triangle::displaced_center(corners)
+    };
+    let rho = pn_triangle::reach(corners, position);
+    if rho == 0.0 {
+        return NONE;
+    }
+    let normal = if params.simplified {
+        // The triangle must have an area; its curved normal is taken when it is inserted.
+        pn_triangle::flat_normal(corners, rho)
+    } else {
+        pn_triangle::center_normal(corners, rho)
+    };
+    normal.map_or(NONE, |normal| (position, normal, rho))
+}
+
+/// The corners of a fan triangle, smallest index first and orientation kept, so that the copies of one triangle in
+/// three fans are computed alike. `None` if the gap is not below π.
+pub fn fan_triangle(rings: &Rings, p: usize, i: usize) -> Option<[u32; 3]> {
+    let ring = rings.ring(p);
+    let last = i + 1 == ring.len();
+    let (a, b) = (ring[i], if last { ring[0] } else { ring[i + 1] });
+    let gap = if last { (b.angle + TAU) - a.angle } else { b.angle - a.angle };
+    if gap >= WIDEST_GAP {
+        return None;
+    }
+    Some(canonical([p as u32, a.id, b.id]))
+}
+
+/// The triangle turned until its smallest index comes first.
+fn canonical([a, b, c]: [u32; 3]) -> [u32; 3] {
+    debug_assert!(a != NO_POINT && b != NO_POINT && c != NO_POINT);
+    if a < b && a < c {
+        [a, b, c]
+    } else if b < c {
+        [b, c, a]
+    } else {
+        [c, a, b]
+    }
+}

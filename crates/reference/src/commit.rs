@@ -1,0 +1,41 @@
+//! The next level: old points with their new radii, then the inserted ones. Twin: `shaders/commit.wgsl`.
+
+use crate::Level;
+use crate::candidates::{Candidates, fan_triangle};
+use crate::insertion::Insertion;
+use crate::math::unit;
+use crate::neighborhood::Rings;
+use crate::pn_triangle;
+use surfine_points::RefineParams;
+
+/// Appends the inserted candidates to the level, by (creator, slot), and returns the corners of their triangles.
+pub fn commit(
+    level: &mut Level,
+    rings: &Rings,
+    candidates: &Candidates,
+    insertion: &Insertion,
+    params: &RefineParams,
+) -> Vec<[u32; 3]> {
+    let mut parents = Vec::new();
+    level.radii.clone_from(&insertion.radii);
+    for slot in (0..rings.len()).filter(|&s| insertion.inserted[s]) {
+        let owner = candidates.owners[slot] as usize;
+        let triangle = fan_triangle(rings, owner, slot - rings.slots(owner).start);
+        let triangle = triangle.expect("an inserted candidate has a triangle");
+        let (position, normal) = if params.simplified {
+            // Section 7, simplification 4: the displacement is computed for inserted points only.
+            let corners = triangle.map(|c| level.corner(c));
+            let flat = || unit(corners[0].normal + corners[1].normal + corners[2].normal);
+            let normal =
+                pn_triangle::center_normal(corners, candidates.rho[slot]).unwrap_or_else(flat);
+            (pn_triangle::displaced_center(corners), normal)
+        } else {
+            (candidates.positions[slot], candidates.normals[slot])
+        };
+        parents.push(triangle);
+        level.positions.push(position);
+        level.normals.push(normal);
+        level.radii.push(insertion.slot_radii[slot]);
+    }
+    parents
+}

@@ -1,0 +1,100 @@
+//! Vectors and angles. Twin: `shaders/shared/math.wgsl`.
+//!
+//! Every function is the same sequence of + - * / and square roots as its twin: system libraries and drivers differ in
+//! `acos` and `atan2`, never in these.
+
+use glam::Vec3;
+
+/// 2π, π and π/2 in f32.
+pub const TAU: f32 = 6.283_185_5;
+/// π in f32.
+pub const PI: f32 = 3.141_592_7;
+const HALF_PI: f32 = 1.570_796_4;
+
+/// `v` with length 1; the zero vector must be kept away by the caller.
+pub fn unit(v: Vec3) -> Vec3 {
+    v * (1.0 / v.dot(v).sqrt())
+}
+
+/// Two unit vectors that span the plane of normal `n`; with `n` they are right-handed, so angles from the first to the
+/// second turn counter-clockwise seen from outside.
+pub fn tangent_frame(n: Vec3) -> (Vec3, Vec3) {
+    let a = n.abs();
+    // The axis farthest from n.
+    let axis = if a.x <= a.y && a.x <= a.z {
+        Vec3::X
+    } else if a.y <= a.z {
+        Vec3::Y
+    } else {
+        Vec3::Z
+    };
+    let e1 = unit(n.cross(axis));
+    (e1, n.cross(e1))
+}
+
+/// Arc tangent for t in [0, 1], after Cephes' `atanf`: within 2e-7.
+fn atan_unit(t: f32) -> f32 {
+    let upper = t > 0.414_213_57;
+    let x = if upper { (t - 1.0) / (t + 1.0) } else { t };
+    let z = x * x;
+    let p = ((0.080_537_446 * z - 0.138_776_85) * z + 0.199_777_11) * z - 0.333_329_5;
+    let a = p * z * x + x;
+    if upper { a + 0.785_398_2 } else { a }
+}
+
+/// Angle of the direction (x, y) in [0, 2π], counter-clockwise from the x axis; 0 for the zero vector.
+pub fn direction_angle(y: f32, x: f32) -> f32 {
+    let ax = x.abs();
+    let ay = y.abs();
+    let longer = ax.max(ay);
+    if longer == 0.0 {
+        return 0.0;
+    }
+    let mut a = atan_unit(ax.min(ay) / longer);
+    if ay > ax {
+        a = HALF_PI - a;
+    }
+    if x < 0.0 {
+        a = PI - a;
+    }
+    if y < 0.0 {
+        a = TAU - a;
+    }
+    a
+}
+
+/// Angle between two vectors in [0, π]; 0 if one is zero.
+pub fn angle_between(u: Vec3, v: Vec3) -> f32 {
+    let c = u.cross(v);
+    direction_angle(c.dot(c).sqrt(), u.dot(v))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_agree_with_the_system_library() {
+        for i in 0..=100_000 {
+            let angle = f64::from(i) * std::f64::consts::TAU / 100_000.0;
+            let (y, x) = (angle.sin() as f32, angle.cos() as f32);
+            let expected = f64::from(y).atan2(f64::from(x)).rem_euclid(std::f64::consts::TAU);
+            let found = f64::from(direction_angle(y, x));
+            // Near the positive x axis 0 and 2π are the same direction.
+            let error =
+                (found - expected).abs().min(std::f64::consts::TAU - (found - expected).abs());
+            assert!(error < 4e-7, "{angle}: {found} instead of {expected}");
+        }
+    }
+
+    #[test]
+    fn frames_are_right_handed_and_orthonormal() {
+        for n in
+            [Vec3::X, Vec3::NEG_Y, Vec3::Z, Vec3::new(0.6, -0.48, 0.64), Vec3::splat(0.577_350_26)]
+        {
+            let (e1, e2) = tangent_frame(n);
+            assert!((e1.cross(e2) - n).length() < 1e-6, "{n}");
+            assert!(e1.dot(n).abs() < 1e-6 && (e1.length() - 1.0).abs() < 1e-6, "{n}");
+        }
+    }
+}

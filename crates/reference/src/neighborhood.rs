@@ -1,0 +1,166 @@
+//! One-ring neighbourhoods (section 4). Twin: `shaders/neighborhood.wgsl`.
+
+use crate::Level;
+use crate::math::{direction_angle, tangent_frame};
+use crate::pn_triangle::geodesic_distance;
+use glam::Vec3;
+use rayon::prelude::*;
+use surfine_points::{Grid, Neighborhood, RefineParams};
+
+/// A corner of a triangle fan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RingEntry {
+    /// Index of the neighbour.
+    pub id: u32,
+    /// Its angle on the tangent plane of the centre, in the frame of [`tangent_frame`], radians in [0, 2π].
+    pub angle: f32,
+}
+
+/// The sorted one-rings of all points, one after the other.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Rings {
+    /// First entry of each point's ring, and one more: the number of entries.
+    pub starts: Vec<u32>,
+    /// Entries by angle; ties by distance, then by index.
+    pub entries: Vec<RingEntry>,
+    /// Sum of the sizes of the Euclidean neighbourhoods (eq. 7).
+    pub ball_neighbors: u64,
+}
+
+impl Rings {
+    /// The ring of a point.
+    pub fn ring(&self, p: usize) -> &[RingEntry] {
+        &self.entries[self.slots(p)]
+    }
+
+    /// The candidate slots of a point: slot `i` is the triangle of its ring entries `i` and `i + 1`.
+    pub fn slots(&self, p: usize) -> std::ops::Range<usize> {
+        self.starts[p] as usize..self.starts[p + 1] as usize
+    }
+
+    /// Number of entries of all rings.
+    pub fn len(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// Whether no point has a ring.
+    pub fn is_empty(&self) -> bool {
+        self.entries.is_empty()
+    }
+}
+
+/// A member of `N^E` seen from the centre, lengths in units of the centre's radius.
+struct Neighbor {
+    id: u32,
+    /// The vector whose fuzzy plane is tested: `q'_i - p` (eq. 9) in the tangent frame for the accurate neighbourhood,
+    /// `p_i - p` for the fuzzy one.
+    offset: Vec3,
+    /// Orthogonal projection `q_i`, up to a positive factor: only its direction counts.
+    x: f32,
+    y: f32,
+}
+
+/// Computes the one-ring of every point.
+pub fn neighborhood(level: &Level, grid: &Grid, params: &RefineParams) -> Rings {
+    let rings: Vec<(usize, Vec<RingEntry>)> = (0..level.len())
+        .into_par_iter()
+        .map(|p| {
+            let ball = consistent_ball(level, grid, params, p);
+            (ball.0, one_ring(&ball.1, params))
+        })
+        .collect();
+    let mut result = Rings { starts: vec![0], ..Rings::default() };
+    for (ball, ring) in rings {
+        result.ball_neighbors += ball as u64;
+        result.entries.extend(ring);
+        result.starts.push(result.entries.len() as u32);
+    }
+    result
+}
+
+/// `N^E` (eq. 7) without the pairs that eq. 6 rejects; also its size before that.
+fn consistent_ball(
+    level: &Level,
+    grid: &Grid,
+    params: &RefineParams,
+    p: usize,
+) -> (usize, Vec<Neighbor>) {
+    let (center, normal, radius) = (level.positions[p], level.normals[p], level.radii[p]);
+    let (e1, e2) = tangent_frame(normal);
+    let inverse = 1.0 / radius;
+    let accurate = params.effective_neighborhood() == Neighborhood::Accurate;
+    let mut size = 0;
+    let mut ball = Vec::new();
+    grid.visit_ball(center, radius, |id| {
+        let d = level.positions[id as usize] - center;
+        let d2 = d.dot(d);
+        // Coincident points have no direction to each other: they are no neighbours.
+        if id as usize == p || d2 > radius * radius || d2 == 0.0 {
+            return;
+        }
+        size += 1;
+        let other = level.normals[id as usize];
+        let (x, y) = (d.dot(e1), d.dot(e2));
+        let q2 = x * x + y * y;
+        if !consistent(d, d2, normal, other) || q2 <= 1e-12 * d2 {
+            return;
+        }
+        if accurate {
+            let s = (geodesic_distance(d, normal, other) * inverse) / q2.sqrt();
+            ball.push(Neighbor { id, offset: Vec3::new(x * s, y * s, 0.0), x: x * s, y: y * s });
+        } else {
+            ball.push(Neighbor { id, offset: d * inverse, x: x * inverse, y: y * inverse });
+        }
+    });
+    (size, ball)
+}
+
+/// Eq. 6, printed inverted: whether neither point lies in the cone of apex the other and axis `n0 + n1`.
+fn consistent(d: Vec3, d2: f32, n0: Vec3, n1: Vec3) -> bool {
+    let u = d * (1.0 / d2.sqrt());
+    (n0 + n1).dot(u).abs() <= 1.0 + n0.dot(n1)
+}
+
+/// Removes the members that lie behind others (eq. 8) and sorts the rest around the centre.
+fn one_ring(ball: &[Neighbor], params: &RefineParams) -> Vec<RingEntry> {
+    let mut ring: Vec<(RingEntry, f32)> = (0..ball.len())
+        .filter(|&i| badness(ball, i, params.sin_theta_f()) <= 1.0 + 1e-3)
+        .map(|i| {
+            let Neighbor { id, x, y, .. } = ball[i];
+            (RingEntry { id, angle: direction_angle(y, x) }, x * x + y * y)
+        })
+        .collect();
+    ring.sort_by(|(a, da), (b, db)| {
+        a.angle.total_cmp(&b.angle).then(da.total_cmp(db)).then(a.id.cmp(&b.id))
+    });
+    ring.into_iter().map(|(entry, _)| entry).collect()
+}
+
+/// Badness `w_i` (eq. 8): how far member `i` lies behind its successors and predecessors.
+///
+/// The maximum is taken over signed squares of `sin α_ij`, which order the same and need no root per pair.
+fn badness(ball: &[Neighbor], i: usize, sin_theta_f: f32) -> f32 {
+    let (mut successor, mut predecessor) = (-2.0f32, -2.0f32);
+    for (j, behind) in ball.iter().enumerate() {
+        let c = ball[i].offset - behind.offset;
+        let product = behind.offset.dot(behind.offset) * c.dot(c);
+        if i == j || product == 0.0 {
+            continue;
+        }
+        let along = behind.offset.dot(c);
+        let sin_squared = along * along.abs() / product;
+        // An exactly collinear point counts as successor.
+        if ball[i].x * behind.y - ball[i].y * behind.x >= 0.0 {
+            successor = successor.max(sin_squared);
+        } else {
+            predecessor = predecessor.max(sin_squared);
+        }
+    }
+    plane_badness(successor, sin_theta_f) + plane_badness(predecessor, sin_theta_f)
+}
+
+/// `w_ij` from the signed square of `sin α_ij`; 0 for an empty set, which passes -2.
+fn plane_badness(sin_squared: f32, sin_theta_f: f32) -> f32 {
+    let sine = if sin_squared < 0.0 { -(-sin_squared).sqrt() } else { sin_squared.sqrt() };
+    if sine < -sin_theta_f { 0.0 } else { 0.5 * (sine / sin_theta_f + 1.0) }
+}
