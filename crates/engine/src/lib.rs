@@ -1,1 +1,56 @@
+//! Refines clouds of oriented points on the GPU: interpolatory refinement of point-based geometry (Guennebaud, Barthe
+//! and Paulin 2005) as compute kernels.
+//!
+//! [`Refiner`] is the whole interface: it holds a device with compiled kernels and buffers, and refines one cloud after
+//! the other. Input points stay as they are, new points lie on the smooth surface through them.
+//!
+//! ```no_run
+//! use surfine::{PointSet, RefineParams, Refiner};
+//! # fn main() -> Result<(), surfine::Error> {
+//! # let points = PointSet::default();
+//! let mut refiner = Refiner::new(None)?;
+//! let params = RefineParams { levels: 2, ..RefineParams::default() };
+//! let refined = refiner.refine(&points, &params)?;
+//! println!("{} points on {}", refined.points.len(), refiner.gpu().name);
+//! # Ok(())
+//! # }
+//! ```
 
+mod buffers;
+mod commands;
+mod error;
+mod gpu;
+mod kernel;
+pub mod records;
+mod refiner;
+mod scan;
+pub mod shaders;
+mod stages;
+
+pub use error::Error;
+pub use gpu::{Gpu, Mode, adapters, choose_adapter};
+pub use kernel::{Kernel, WORKGROUP_SIZE, exact_spirv};
+pub use refiner::{GpuRefined, Refiner};
+pub use surfine_points::{
+    Attribute, LevelReport, Neighborhood, PointSet, Progress, RefineParams, Refined, Vec3,
+};
+pub use wgpu;
+
+/// The parts of the engine that tests run one at a time.
+pub mod testing {
+    pub use crate::buffers::Buffer;
+    pub use crate::commands::{Commands, Uniforms};
+
+    /// Reads the first `count` values of a buffer.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn read<T: bytemuck::Pod>(
+        gpu: &crate::Gpu,
+        buffer: &Buffer,
+        count: usize,
+    ) -> Result<Vec<T>, crate::Error> {
+        let bytes = crate::buffers::read(gpu, buffer.raw(), (count * size_of::<T>()) as u64)?;
+        Ok(bytemuck::pod_collect_to_vec(&bytes))
+    }
+}

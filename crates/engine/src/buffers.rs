@@ -1,0 +1,125 @@
+//! Device memory that grows and is used again.
+
+use crate::{Error, Gpu};
+
+/// A labelled storage buffer. It grows on demand and never shrinks.
+#[derive(Debug)]
+pub struct Buffer {
+    label: &'static str,
+    raw: wgpu::Buffer,
+}
+
+const STORAGE: wgpu::BufferUsages = wgpu::BufferUsages::STORAGE
+    .union(wgpu::BufferUsages::COPY_SRC)
+    .union(wgpu::BufferUsages::COPY_DST)
+    .union(wgpu::BufferUsages::VERTEX);
+
+impl Buffer {
+    /// A buffer of at least `bytes`, zeroed.
+    ///
+    /// # Errors
+    /// The adapter does not allow that much in one buffer.
+    pub fn new(gpu: &Gpu, label: &'static str, bytes: u64) -> Result<Self, Error> {
+        let have = gpu.largest_binding();
+        if bytes > have {
+            return Err(Error::Limit { what: label, need: bytes, have, adapter: gpu.name.clone() });
+        }
+        let size = bytes.next_multiple_of(16).max(64);
+        let raw = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size,
+            usage: STORAGE,
+            mapped_at_creation: false,
+        });
+        Ok(Self { label, raw })
+    }
+
+    /// A buffer that holds `data`.
+    ///
+    /// # Errors
+    /// As [`Buffer::new`].
+    pub fn with_data<T: bytemuck::NoUninit>(
+        gpu: &Gpu,
+        label: &'static str,
+        data: &[T],
+    ) -> Result<Self, Error> {
+        let buffer = Self::new(gpu, label, size_of_val(data) as u64)?;
+        gpu.queue.write_buffer(&buffer.raw, 0, bytemuck::cast_slice(data));
+        Ok(buffer)
+    }
+
+    /// Bytes that it holds.
+    pub fn size(&self) -> u64 {
+        self.raw.size()
+    }
+
+    /// The buffer itself.
+    pub fn raw(&self) -> &wgpu::Buffer {
+        &self.raw
+    }
+
+    /// Makes room for `bytes`; the old content is lost where it grows.
+    pub(crate) fn reserve(&mut self, gpu: &Gpu, bytes: u64) -> Result<(), Error> {
+        if bytes > self.size() {
+            *self = Self::new(gpu, self.label, with_headroom(gpu, bytes))?;
+        }
+        Ok(())
+    }
+
+    /// Makes room for `bytes` and keeps the first `kept` bytes.
+    pub(crate) fn grow(&mut self, gpu: &Gpu, bytes: u64, kept: u64) -> Result<(), Error> {
+        if bytes > self.size() {
+            let grown = Self::new(gpu, self.label, bytes)?;
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            encoder.copy_buffer_to_buffer(&self.raw, 0, &grown.raw, 0, kept.next_multiple_of(4));
+            gpu.queue.submit([encoder.finish()]);
+            *self = grown;
+        }
+        Ok(())
+    }
+
+    /// Hands the buffer out and leaves an empty one.
+    pub(crate) fn take(&mut self, gpu: &Gpu) -> Result<wgpu::Buffer, Error> {
+        Ok(std::mem::replace(self, Self::new(gpu, self.label, 0)?).raw)
+    }
+}
+
+/// A quarter more than asked for, as far as the adapter allows it: needs grow from level to level.
+fn with_headroom(gpu: &Gpu, bytes: u64) -> u64 {
+    (bytes + bytes / 4).min(gpu.largest_binding()).max(bytes)
+}
+
+/// Reads `bytes` bytes from the start of a buffer.
+pub(crate) fn read(gpu: &Gpu, source: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8>, Error> {
+    read_parts(gpu, &[(source, 0, bytes)])
+}
+
+/// Reads several ranges (buffer, offset, bytes), one after the other, in one go. All are multiples of 4.
+pub(crate) fn read_parts(gpu: &Gpu, parts: &[(&wgpu::Buffer, u64, u64)]) -> Result<Vec<u8>, Error> {
+    let total: u64 = parts.iter().map(|p| p.2).sum();
+    if total == 0 {
+        return Ok(Vec::new());
+    }
+    let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("surfine readback"),
+        size: total,
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let mut at = 0;
+    for &(source, offset, bytes) in parts {
+        encoder.copy_buffer_to_buffer(source, offset, &staging, at, bytes);
+        at += bytes;
+    }
+    gpu.queue.submit([encoder.finish()]);
+    let (sender, receiver) = std::sync::mpsc::channel();
+    staging.map_async(wgpu::MapMode::Read, .., move |result| {
+        // The receiver is gone only if the wait below failed, which is reported there.
+        let _ = sender.send(result);
+    });
+    gpu.wait()?;
+    receiver.recv().map_err(|e| gpu.error(&e))?.map_err(|e| gpu.error(&e))?;
+    let view = staging.get_mapped_range(..).map_err(|e| gpu.error(&e))?;
+    Ok(view.to_vec())
+}

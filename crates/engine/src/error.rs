@@ -1,0 +1,70 @@
+//! What can go wrong on the way to a refined cloud.
+
+use surfine_points::{Invalid, ParamError};
+
+/// Why a refinement did not succeed.
+#[derive(Clone, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The points are unfit.
+    #[error(transparent)]
+    Points(#[from] Invalid),
+    /// A parameter is out of its range.
+    #[error(transparent)]
+    Params(#[from] ParamError),
+    /// There is no adapter at all.
+    #[error(
+        "no GPU adapter found: install a Vulkan driver (on Debian `mesa-vulkan-drivers`, a software one), or use the CPU"
+    )]
+    NoAdapter,
+    /// No adapter has the wanted name.
+    #[error("no GPU adapter is named like \"{wanted}\"; there are: {present}")]
+    NoSuchAdapter {
+        /// The name that was asked for.
+        wanted: String,
+        /// The names of all adapters.
+        present: String,
+    },
+    /// The device can't hold what the refinement needs.
+    #[error(
+        "{what} need {need} bytes, more than the {have} that {adapter} allows in one buffer: \
+         use fewer levels, split the cloud, or use the CPU"
+    )]
+    Limit {
+        /// What needs the memory.
+        what: &'static str,
+        /// Bytes needed.
+        need: u64,
+        /// Bytes allowed.
+        have: u64,
+        /// Name of the adapter.
+        adapter: String,
+    },
+    /// One point alone has more neighbours than the device can hold.
+    #[error(
+        "a point has {neighbors} neighbours within its radius, more than {adapter} can hold: \
+         lower the radii to about 1.25 times the distance to the farthest natural neighbour, or use the CPU"
+    )]
+    Crowded {
+        /// Size of the largest Euclidean neighbourhood.
+        neighbors: u32,
+        /// Name of the adapter.
+        adapter: String,
+    },
+    /// A kernel could not be built.
+    #[error("kernel {name}: {message}")]
+    Kernel {
+        /// Name of the kernel.
+        name: &'static str,
+        /// What the compiler said.
+        message: String,
+    },
+    /// The device refused a request, ran out of memory or was lost.
+    #[error("{adapter}: {message}")]
+    Device {
+        /// Name of the adapter.
+        adapter: String,
+        /// What the driver said.
+        message: String,
+    },
+}

@@ -1,0 +1,152 @@
+//! Adapters and devices.
+
+use crate::Error;
+use std::time::Duration;
+
+/// How long the host waits for the device before it gives up: a hang must not be for ever.
+const TIMEOUT: Duration = Duration::from_secs(600);
+
+/// How kernels were compiled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// SPIR-V in which no operation may be contracted or reassociated: the bytes of the CPU reference on every driver
+    /// that rounds division and square root correctly.
+    Exact,
+    /// Plain WGSL: the driver may reassociate, so results can differ from the reference in rounding.
+    Plain,
+}
+
+impl Mode {
+    /// Lower-case name, for messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::Plain => "plain",
+        }
+    }
+}
+
+/// A device with what the kernels need to know of it.
+#[derive(Clone, Debug)]
+pub struct Gpu {
+    /// The device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// How kernels are compiled for it.
+    pub mode: Mode,
+    /// Name of the adapter.
+    pub name: String,
+}
+
+/// The adapters of this machine, hardware first.
+pub fn adapters() -> Vec<wgpu::Adapter> {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+    // Tells a Mesa layer to stay out: it chooses among devices for windows and complains where there are none.
+    descriptor.flags |= wgpu::InstanceFlags::empty();
+    let instance = wgpu::Instance::new(descriptor);
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
+    adapters.sort_by_key(|a| rank(a.get_info().device_type));
+    adapters
+}
+
+fn rank(kind: wgpu::DeviceType) -> u32 {
+    match kind {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    }
+}
+
+/// The adapter whose name or driver holds `wanted`, in any case; without a wish that of `WGPU_ADAPTER_NAME`, else the
+/// first of [`adapters`].
+///
+/// # Errors
+/// There is none, or none of that name.
+pub fn choose_adapter(wanted: Option<&str>) -> Result<wgpu::Adapter, Error> {
+    let from_env = std::env::var("WGPU_ADAPTER_NAME").ok().filter(|name| !name.is_empty());
+    let wanted = wanted.map(str::to_owned).or(from_env);
+    let mut adapters = adapters();
+    if adapters.is_empty() {
+        return Err(Error::NoAdapter);
+    }
+    let Some(wanted) = wanted else { return Ok(adapters.remove(0)) };
+    let matches = |a: &wgpu::Adapter| {
+        let info = a.get_info();
+        let text = format!("{} {} {}", info.name, info.driver, info.driver_info).to_lowercase();
+        text.contains(&wanted.to_lowercase())
+    };
+    match adapters.iter().position(matches) {
+        Some(i) => Ok(adapters.remove(i)),
+        None => {
+            let names: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
+            Err(Error::NoSuchAdapter { wanted, present: names.join(", ") })
+        }
+    }
+}
+
+impl Gpu {
+    /// Opens an adapter with the features and limits that the kernels can use.
+    ///
+    /// # Errors
+    /// The driver refuses.
+    pub fn open(adapter: &wgpu::Adapter) -> Result<Self, Error> {
+        let features = adapter.features() & wgpu::Features::PASSTHROUGH_SHADERS;
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("surfine"),
+            required_features: features,
+            required_limits: adapter.limits(),
+            ..Default::default()
+        };
+        let name = adapter.get_info().name;
+        let opened = pollster::block_on(adapter.request_device(&descriptor));
+        let (device, queue) =
+            opened.map_err(|e| Error::Device { adapter: name, message: e.to_string() })?;
+        Ok(Self::from_device(device, queue))
+    }
+
+    /// Takes the caller's device. Kernels are exact if it was opened with `Features::PASSTHROUGH_SHADERS` on Vulkan.
+    pub fn from_device(device: wgpu::Device, queue: wgpu::Queue) -> Self {
+        let info = device.adapter_info();
+        let exact = info.backend == wgpu::Backend::Vulkan
+            && device.features().contains(wgpu::Features::PASSTHROUGH_SHADERS);
+        let mode = if exact { Mode::Exact } else { Mode::Plain };
+        Self { device, queue, mode, name: info.name }
+    }
+
+    /// The largest buffer that a kernel can use, bytes.
+    pub fn largest_binding(&self) -> u64 {
+        let limits = self.device.limits();
+        u64::from(limits.max_storage_buffer_binding_size as u32).min(limits.max_buffer_size)
+    }
+
+    /// Runs `work` and returns the device's own complaint, if there was one, rather than what followed from it.
+    pub(crate) fn guarded<T>(&self, work: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
+        let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
+        let result = work();
+        let mut complaint = None;
+        for scope in [internal, validation, memory] {
+            complaint = pollster::block_on(scope.pop()).or(complaint);
+        }
+        match complaint {
+            Some(e) => Err(self.error(&e)),
+            None => result,
+        }
+    }
+
+    /// Waits for everything that was submitted.
+    pub(crate) fn wait(&self) -> Result<(), Error> {
+        let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(TIMEOUT) };
+        self.device.poll(wait).map(|_| ()).map_err(|e| self.error(&e))
+    }
+
+    pub(crate) fn error(&self, message: &impl ToString) -> Error {
+        // Drivers write long texts: keep to one line.
+        let message = message.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+        Error::Device { adapter: self.name.clone(), message }
+    }
+}

@@ -1,0 +1,172 @@
+//! One compute kernel: from WGSL to a pipeline, with its layout read from the text.
+
+use crate::shaders::Shader;
+use crate::{Error, Gpu, Mode};
+
+/// Invocations of a workgroup; `linear_index` in the shaders counts on it.
+pub const WORKGROUP_SIZE: u32 = 64;
+
+/// A kernel that is ready to run.
+#[derive(Debug)]
+pub struct Kernel {
+    name: &'static str,
+    pipeline: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
+}
+
+impl Kernel {
+    /// Compiles a kernel for a device, in the device's mode.
+    ///
+    /// # Errors
+    /// The text is no valid WGSL, or the driver refuses it.
+    pub fn new(gpu: &Gpu, shader: &Shader) -> Result<Self, Error> {
+        let failed = |message: String| Error::Kernel { name: shader.name, message };
+        let source = shader.source();
+        let module = naga::front::wgsl::parse_str(&source)
+            .map_err(|e| failed(e.emit_to_string_with_path(&source, shader.name)))?;
+        let entries = layout_entries(&module);
+        gpu.guarded(|| {
+            let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some(shader.name),
+                entries: &entries,
+            });
+            let pipeline_layout =
+                gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                    label: Some(shader.name),
+                    bind_group_layouts: &[Some(&layout)],
+                    immediate_size: 0,
+                });
+            let compiled = match gpu.mode {
+                Mode::Exact => exact_module(gpu, shader, &module).map_err(failed)?,
+                Mode::Plain => gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                    label: Some(shader.name),
+                    source: wgpu::ShaderSource::Wgsl(source.as_str().into()),
+                }),
+            };
+            let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(shader.name),
+                layout: Some(&pipeline_layout),
+                module: &compiled,
+                entry_point: Some(shader.name),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                cache: None,
+            });
+            Ok(Self { name: shader.name, pipeline, layout })
+        })
+    }
+
+    /// Name of the kernel.
+    pub fn name(&self) -> &'static str {
+        self.name
+    }
+
+    pub(crate) fn pipeline(&self) -> &wgpu::ComputePipeline {
+        &self.pipeline
+    }
+
+    pub(crate) fn layout(&self) -> &wgpu::BindGroupLayout {
+        &self.layout
+    }
+}
+
+/// The bindings of group 0 as the text declares them. Binding 1 is the uniform that changes from dispatch to dispatch.
+fn layout_entries(module: &naga::Module) -> Vec<wgpu::BindGroupLayoutEntry> {
+    let bound =
+        module.global_variables.iter().filter_map(|(_, v)| Some((v.binding?.binding, v.space)));
+    let mut entries: Vec<_> = bound
+        .map(|(binding, space)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty: wgpu::BindingType::Buffer {
+                ty: match space {
+                    naga::AddressSpace::Storage { access } => wgpu::BufferBindingType::Storage {
+                        read_only: !access.contains(naga::StorageAccess::STORE),
+                    },
+                    _ => wgpu::BufferBindingType::Uniform,
+                },
+                has_dynamic_offset: binding == 1,
+                min_binding_size: None,
+            },
+            count: None,
+        })
+        .collect();
+    entries.sort_by_key(|e| e.binding);
+    entries
+}
+
+/// SPIR-V in which every float operation is marked `NoContraction`: without the mark drivers reassociate.
+fn exact_module(
+    gpu: &Gpu,
+    shader: &Shader,
+    module: &naga::Module,
+) -> Result<wgpu::ShaderModule, String> {
+    let words = exact_spirv(shader.name, module)?;
+    let entry_point = wgpu::PassthroughShaderEntryPoint {
+        name: shader.name.into(),
+        workgroup_size: (WORKGROUP_SIZE, 1, 1),
+    };
+    // SAFETY: the words come from naga's writer, of a module that its validator accepted, with bounds checks on;
+    // decorations change rounding only.
+    Ok(unsafe {
+        gpu.device.create_shader_module_passthrough(wgpu::ShaderModuleDescriptorPassthrough {
+            label: Some(shader.name),
+            spirv: Some(words.into()),
+            entry_points: vec![entry_point].into(),
+            ..Default::default()
+        })
+    })
+}
+
+/// Translates a module and decorates its float operations.
+///
+/// # Errors
+/// The module is not valid.
+pub fn exact_spirv(name: &str, module: &naga::Module) -> Result<Vec<u32>, String> {
+    use naga::valid::{Capabilities, ValidationFlags, Validator};
+    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+        .validate(module)
+        .map_err(|e| e.into_inner().to_string())?;
+    let checked = naga::proc::BoundsCheckPolicy::Restrict;
+    let options = naga::back::spv::Options {
+        lang_version: (1, 3),
+        bounds_check_policies: naga::proc::BoundsCheckPolicies {
+            index: checked,
+            buffer: checked,
+            ..Default::default()
+        },
+        force_loop_bounding: false,
+        ..Default::default()
+    };
+    let pipeline = naga::back::spv::PipelineOptions {
+        shader_stage: naga::ShaderStage::Compute,
+        entry_point: name.into(),
+    };
+    let words = naga::back::spv::write_vec(module, &info, &options, Some(&pipeline));
+    Ok(forbid_contraction(&words.map_err(|e| e.to_string())?))
+}
+
+/// Words of the SPIR-V header.
+const HEADER: usize = 5;
+
+/// Puts `OpDecorate id NoContraction` for every float operation before the first type.
+fn forbid_contraction(words: &[u32]) -> Vec<u32> {
+    const OP_DECORATE: u32 = 71;
+    const NO_CONTRACTION: u32 = 42;
+    let mut decorations = Vec::new();
+    let mut first_type = None;
+    let mut at = HEADER;
+    while at < words.len() {
+        let (opcode, length) = (words[at] & 0xffff, (words[at] >> 16) as usize);
+        // OpTypeVoid (19) to OpTypeForwardPointer (39).
+        if (19..=39).contains(&opcode) && first_type.is_none() {
+            first_type = Some(at);
+        }
+        // OpExtInst, OpFNegate, OpFAdd, OpFSub, OpFMul, OpFDiv, OpFRem, OpFMod to OpDot.
+        if matches!(opcode, 12 | 127 | 129 | 131 | 133 | 136 | 140..=148) {
+            decorations.extend([3 << 16 | OP_DECORATE, words[at + 2], NO_CONTRACTION]);
+        }
+        at += length.max(1);
+    }
+    let at = first_type.unwrap_or(words.len());
+    [&words[..at], &decorations, &words[at..]].concat()
+}

@@ -1,0 +1,85 @@
+//! Records that kernels and host share: mirrors of `shaders/shared/records.wgsl`.
+
+use bytemuck::{Pod, Zeroable};
+use surfine_points::{GridShape, Neighborhood, RefineParams};
+
+/// A point in device memory: 32 bytes, fit for a vertex buffer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Point {
+    /// Position, in the units of the input and relative to its origin.
+    pub position: [f32; 3],
+    /// Radius, in the same units.
+    pub radius: f32,
+    /// Unit normal.
+    pub normal: [f32; 3],
+    /// The refinement step that inserted the point; 0 for input points.
+    pub level: u32,
+}
+
+/// What stays the same for all dispatches of one step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+#[expect(missing_docs, reason = "the fields are documented in records.wgsl")]
+pub struct Params {
+    pub origin: [f32; 3],
+    pub inverse_cell: f32,
+    pub bits: [u32; 3],
+    pub cell: f32,
+    pub sin_theta_f: f32,
+    pub theta_c: f32,
+    pub lambda1: f32,
+    pub lambda2: f32,
+    pub accurate: u32,
+    pub simplified: u32,
+    pub points: u32,
+    pub slots: u32,
+    pub level: u32,
+    pub arena_words: u32,
+    pub ring_entries: u32,
+    pub conflict_entries: u32,
+}
+
+impl Params {
+    /// The parameters of a refinement, before anything is known of the level.
+    pub fn new(params: &RefineParams) -> Self {
+        Self {
+            sin_theta_f: params.sin_theta_f(),
+            theta_c: params.theta_c,
+            lambda1: params.lambda1,
+            lambda2: params.lambda2,
+            accurate: u32::from(params.effective_neighborhood() == Neighborhood::Accurate),
+            simplified: u32::from(params.simplified),
+            ..Self::default()
+        }
+    }
+
+    /// The same with a grid.
+    #[must_use]
+    pub fn with_grid(self, shape: &GridShape) -> Self {
+        Self {
+            origin: shape.origin.to_array(),
+            inverse_cell: 1.0 / shape.cell,
+            bits: shape.bits,
+            cell: shape.cell,
+            ..self
+        }
+    }
+}
+
+/// Counters that the host reads between stages.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+#[expect(missing_docs, reason = "the fields are documented in records.wgsl")]
+pub struct Counters {
+    pub arena: u32,
+    pub arena_peak: u32,
+    pub conflicts: u32,
+    pub mirrored: u32,
+    pub uncolored: u32,
+    pub classes: u32,
+    pub isolated: u32,
+    pub largest_ball: u32,
+    pub ball_low: u32,
+    pub ball_high: u32,
+}

@@ -1,0 +1,51 @@
+//! The kernels: which files make up each of them. The only place that knows where the shaders are.
+
+/// The source of a kernel.
+#[derive(Clone, Copy, Debug)]
+pub struct Shader {
+    /// Name of the kernel: stem of its file and name of its entry point.
+    pub name: &'static str,
+    /// The kernel's own file first, so that line numbers in messages are its own, then the shared ones.
+    pub files: &'static [&'static str],
+}
+
+impl Shader {
+    /// The whole WGSL text.
+    pub fn source(&self) -> String {
+        self.files.join("\n")
+    }
+}
+
+macro_rules! file {
+    ($($part:literal)+) => {
+        include_str!(concat!("../../../shaders/", $($part,)+ ".wgsl"))
+    };
+}
+
+macro_rules! shader {
+    ($name:literal $(, $shared:literal)*) => {
+        Shader {
+            name: $name,
+            files: &[file!($name), file!("shared/" "records") $(, file!("shared/" $shared))*],
+        }
+    };
+}
+
+/// All kernels, in the order of the stages.
+pub const SHADERS: &[Shader] = &[
+    shader!("grid_points", "cells"),
+    shader!("grid_candidates", "cells"),
+    shader!("sort_fill"),
+    shader!("scan_sum"),
+    shader!("scan_add"),
+    shader!("neighborhood", "cells", "ball_walk", "math", "pn_triangle"),
+    shader!("neighborhood_store"),
+    shader!("candidates", "math", "pn_triangle", "fan_triangle"),
+    shader!("conflicts", "cells", "ball_walk", "math"),
+    shader!("conflicts_mirror"),
+    shader!("coloring"),
+    shader!("class_count"),
+    shader!("insertion", "cells", "ball_walk", "math", "pn_triangle", "new_ring"),
+    shader!("commit_count"),
+    shader!("commit", "math", "pn_triangle", "fan_triangle"),
+];

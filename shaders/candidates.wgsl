@@ -1,0 +1,61 @@
+// candidates: the possible new points L_p of each fan (section 5, eq. 12). Twin: crates/reference/src/candidates.rs
+// One invocation per point.
+
+@group(0) @binding(2) var<storage, read> points: array<Point>;
+@group(0) @binding(3) var<storage, read> ring_starts: array<u32>;
+@group(0) @binding(4) var<storage, read> ring_entries: array<vec2<u32>>;
+/// Position, and ρ: the largest distance to the three corners, or -1 where the slot holds no candidate.
+@group(0) @binding(5) var<storage, read_write> candidate_positions: array<vec4<f32>>;
+@group(0) @binding(6) var<storage, read_write> candidate_normals: array<vec4<f32>>;
+/// The point whose fan holds the slot.
+@group(0) @binding(7) var<storage, read_write> owners: array<u32>;
+@group(0) @binding(8) var<storage, read_write> states: array<u32>;
+
+@compute @workgroup_size(64)
+fn candidates(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let p = linear_index(id, groups);
+    if p >= params.points {
+        return;
+    }
+    for (var slot = ring_starts[p]; slot < ring_starts[p + 1u]; slot++) {
+        owners[slot] = p;
+        let exists = candidate(p, slot);
+        states[slot] = select(NONE, FREE, exists);
+        if !exists {
+            candidate_positions[slot] = vec4(0.0, 0.0, 0.0, -1.0);
+            candidate_normals[slot] = vec4(0.0);
+        }
+    }
+}
+
+/// Writes the candidate of a slot; false if there is none.
+fn candidate(p: u32, slot: u32) -> bool {
+    let corners = fan_triangle(p, slot);
+    if corners.x == NONE {
+        return false;
+    }
+    let triangle = triangle_of(corners);
+    var position: vec3<f32>;
+    if params.simplified == 1u {
+        position = center_of_gravity(triangle);
+    } else {
+        position = displaced_center(triangle);
+    }
+    let rho = reach(triangle, position);
+    if rho == 0.0 {
+        return false;
+    }
+    var normal: vec3<f32>;
+    if params.simplified == 1u {
+        // The triangle must have an area; its curved normal is taken when it is inserted.
+        normal = flat_cross(triangle, rho);
+    } else {
+        normal = center_cross(triangle, rho);
+    }
+    if dot3(normal, normal) <= FLAT {
+        return false;
+    }
+    candidate_positions[slot] = vec4(position, rho);
+    candidate_normals[slot] = vec4(unit(normal), 0.0);
+    return true;
+}

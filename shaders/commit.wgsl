@@ -1,0 +1,48 @@
+// commit: appends the inserted candidates to the cloud, by (creator, slot), and gives old points their new radii.
+// Twin: crates/reference/src/commit.rs
+// One invocation per slot, or per point where there are more. dispatch: new points before this step.
+
+@group(0) @binding(2) var<storage, read_write> points: array<Point>;
+@group(0) @binding(3) var<storage, read> ring_starts: array<u32>;
+@group(0) @binding(4) var<storage, read> ring_entries: array<vec2<u32>>;
+@group(0) @binding(5) var<storage, read> candidate_positions: array<vec4<f32>>;
+@group(0) @binding(6) var<storage, read> candidate_normals: array<vec4<f32>>;
+@group(0) @binding(7) var<storage, read> owners: array<u32>;
+/// Number of inserted candidates before each slot, and one more.
+@group(0) @binding(8) var<storage, read> new_indices: array<u32>;
+@group(0) @binding(9) var<storage, read> next_radii: array<u32>;
+/// Three corners of each new point's triangle.
+@group(0) @binding(10) var<storage, read_write> parents: array<u32>;
+
+@compute @workgroup_size(64)
+fn commit(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let index = linear_index(id, groups);
+    if index < params.points {
+        points[index].radius = bitcast<f32>(next_radii[index]);
+    }
+    if index < params.slots && new_indices[index + 1u] != new_indices[index] {
+        append_point(index, new_indices[index]);
+    }
+}
+
+fn append_point(slot: u32, rank: u32) {
+    let corners = fan_triangle(owners[slot], slot);
+    var position = candidate_positions[slot].xyz;
+    var normal = candidate_normals[slot].xyz;
+    if params.simplified == 1u {
+        // Section 7, simplification 4: the displacement is computed for inserted points only.
+        let triangle = triangle_of(corners);
+        position = displaced_center(triangle);
+        normal = center_cross(triangle, candidate_positions[slot].w);
+        if dot3(normal, normal) <= FLAT {
+            normal = triangle.a.normal + triangle.b.normal + triangle.c.normal;
+        }
+        normal = unit(normal);
+    }
+    let radius = bitcast<f32>(next_radii[params.points + slot]);
+    points[params.points + rank] = Point(position, radius, normal, params.level);
+    let first = 3u * (dispatch.x + rank);
+    parents[first] = corners.x;
+    parents[first + 1u] = corners.y;
+    parents[first + 2u] = corners.z;
+}

@@ -1,0 +1,15 @@
+// Cells of a uniform grid that wraps around. Twin: crates/points/src/grid.rs
+
+fn cell_count() -> u32 {
+    return 1u << (params.bits.x + params.bits.y + params.bits.z);
+}
+
+fn cell_coordinates(x: vec3<f32>) -> vec3<i32> {
+    return vec3<i32>(floor((x - params.origin) * params.inverse_cell));
+}
+
+/// Index of a cell: its coordinates wrapped, x running fastest.
+fn cell_index(c: vec3<i32>) -> u32 {
+    let wrapped = vec3<u32>(c) & ((vec3(1u) << params.bits) - vec3(1u));
+    return wrapped.x | (wrapped.y << params.bits.x) | (wrapped.z << (params.bits.x + params.bits.y));
+}

@@ -1,0 +1,36 @@
+// The triangles of a fan. Twin: `fan_triangle` in crates/reference/src/candidates.rs
+//
+// Expects `ring_starts`, `ring_entries` and `points`.
+
+/// A fan triangle needs a gap below π(1 - 1e-4) radians: at π the fan has no triangle there.
+const WIDEST_GAP: f32 = 3.1412785;
+
+/// The corners of slot's triangle in the fan of p, smallest index first and orientation kept, so that the copies of
+/// one triangle in three fans are computed alike. NONE if the gap is not below π.
+fn fan_triangle(p: u32, slot: u32) -> vec3<u32> {
+    let last = slot + 1u == ring_starts[p + 1u];
+    let a = ring_entries[slot];
+    let b = ring_entries[select(slot + 1u, ring_starts[p], last)];
+    var gap = bitcast<f32>(b.y) - bitcast<f32>(a.y);
+    if last {
+        gap = (bitcast<f32>(b.y) + TAU) - bitcast<f32>(a.y);
+    }
+    if gap >= WIDEST_GAP {
+        return vec3(NONE);
+    }
+    if p < a.x && p < b.x {
+        return vec3(p, a.x, b.x);
+    }
+    if a.x < b.x {
+        return vec3(a.x, b.x, p);
+    }
+    return vec3(b.x, p, a.x);
+}
+
+fn corner(p: u32) -> Corner {
+    return Corner(points[p].position, points[p].normal);
+}
+
+fn triangle_of(corners: vec3<u32>) -> Triangle {
+    return Triangle(corner(corners.x), corner(corners.y), corner(corners.z));
+}

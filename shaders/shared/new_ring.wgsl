@@ -1,0 +1,190 @@
+// The new neighbourhood N' of one point while it is refined. Twin: `Fan` in crates/reference/src/insertion.rs
+//
+// Expects `points`, `candidate_positions`, `candidate_normals`, `next_radii` and `arena`.
+
+/// Radii exceed the distances they must cover by this factor, so that rounding can't lose the farthest ring.
+const COVER: f32 = 1.02;
+/// A gap or an angle must be wider by this factor to be preferred to an earlier one: regular grids tie.
+const HYSTERESIS: f32 = 1.00001;
+/// A candidate nearer than this to an end of its gap, radians, does not split it.
+const SMALLEST_SPLIT: f32 = 1e-3;
+/// A member of N' in the arena: slot, bits of its angle on the tangent plane, bits of the gap to the next member.
+const MEMBER_WORDS: u32 = 3u;
+
+struct NewRing {
+    center: vec3<f32>,
+    radius: f32,
+    e1: vec3<f32>,
+    inverse_radius: f32,
+    e2: vec3<f32>,
+    /// Number of members of N'.
+    size: u32,
+    /// First arena words of N', of the candidates' angles and of Y.
+    members: u32,
+    angles: u32,
+    outer: u32,
+    outer_size: u32,
+}
+
+var<private> ring: NewRing;
+
+fn open_ring(p: u32) {
+    let frame = tangent_frame(points[p].normal);
+    ring.center = points[p].position;
+    ring.radius = points[p].radius;
+    ring.inverse_radius = 1.0 / points[p].radius;
+    ring.e1 = frame.e1;
+    ring.e2 = frame.e2;
+    ring.size = 0u;
+    ring.outer_size = 0u;
+}
+
+/// A new point relative to the centre.
+fn offset_of(slot: u32) -> vec3<f32> {
+    return candidate_positions[slot].xyz - ring.center;
+}
+
+fn angle_of(slot: u32) -> f32 {
+    let d = offset_of(slot);
+    return direction_angle(dot3(d, ring.e2), dot3(d, ring.e1));
+}
+
+fn slot_at(i: u32) -> u32 {
+    return arena[ring.members + MEMBER_WORDS * i];
+}
+
+fn angle_at(i: u32) -> f32 {
+    return bitcast<f32>(arena[ring.members + MEMBER_WORDS * i + 1u]);
+}
+
+fn gap_of(i: u32) -> f32 {
+    return bitcast<f32>(arena[ring.members + MEMBER_WORDS * i + 2u]);
+}
+
+fn set_gap(i: u32, gap: f32) {
+    arena[ring.members + MEMBER_WORDS * i + 2u] = bitcast<u32>(gap);
+}
+
+fn next_member(i: u32) -> u32 {
+    return select(i + 1u, 0u, i + 1u == ring.size);
+}
+
+fn is_member(slot: u32) -> bool {
+    for (var i = 0u; i < ring.size; i++) {
+        if slot_at(i) == slot {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Directed angle on the tangent plane from member i to the next one, in [0, 2π].
+fn directed_gap(i: u32) -> f32 {
+    if i + 1u == ring.size {
+        return (angle_at(0u) + TAU) - angle_at(i);
+    }
+    return angle_at(i + 1u) - angle_at(i);
+}
+
+/// Angle from member i to the next one: curved (eq. 5), or plain if simplified; directed from π on.
+fn measured_gap(i: u32) -> f32 {
+    let directed = directed_gap(i);
+    if directed >= PI {
+        return directed;
+    }
+    let a = slot_at(i);
+    let b = slot_at(next_member(i));
+    let from_a = offset_of(a) * ring.inverse_radius;
+    let from_b = offset_of(b) * ring.inverse_radius;
+    if params.simplified == 1u {
+        return angle_between(from_a, from_b);
+    }
+    return curved_angle(Corner(from_a, candidate_normals[a].xyz), Corner(from_b, candidate_normals[b].xyz));
+}
+
+/// Puts a new point into N' by angle, ties by slot, and returns its place.
+fn place(slot: u32, angle: f32) -> u32 {
+    var at = ring.size;
+    while at > 0u && (angle < angle_at(at - 1u) || (angle == angle_at(at - 1u) && slot < slot_at(at - 1u))) {
+        let to = ring.members + MEMBER_WORDS * at;
+        for (var word = to; word < to + MEMBER_WORDS; word++) {
+            arena[word] = arena[word - MEMBER_WORDS];
+        }
+        at -= 1u;
+    }
+    arena[ring.members + MEMBER_WORDS * at] = slot;
+    arena[ring.members + MEMBER_WORDS * at + 1u] = bitcast<u32>(angle);
+    ring.size += 1u;
+    return at;
+}
+
+/// Adds a new point to N' and measures the two gaps that it makes.
+fn add(slot: u32) {
+    let at = place(slot, angle_of(slot));
+    let before = select(at - 1u, ring.size - 1u, at == 0u);
+    set_gap(before, measured_gap(before));
+    set_gap(at, measured_gap(at));
+}
+
+/// The first of the widest gaps.
+fn widest_gap() -> u32 {
+    var widest = 0u;
+    for (var i = 1u; i < ring.size; i++) {
+        if gap_of(i) > gap_of(widest) * HYSTERESIS {
+            widest = i;
+        }
+    }
+    return widest;
+}
+
+struct Closest {
+    slot: u32,
+    squared: f32,
+}
+
+/// The new point of Y or N' whose discard sphere (eq. 11) holds the candidate: the closest of them, or NONE.
+fn discarded_by(slot: u32) -> u32 {
+    var closest = Closest(NONE, 0.0);
+    for (var i = 0u; i < ring.outer_size; i++) {
+        try_discard(&closest, slot, arena[ring.outer + i]);
+    }
+    for (var i = 0u; i < ring.size; i++) {
+        try_discard(&closest, slot, slot_at(i));
+    }
+    return closest.slot;
+}
+
+fn try_discard(closest: ptr<function, Closest>, slot: u32, h: u32) {
+    let d = candidate_positions[slot].xyz - candidate_positions[h].xyz;
+    let d2 = dot3(d, d);
+    let sphere = params.lambda2 * candidate_positions[h].w;
+    let nearer = (*closest).slot == NONE || d2 < (*closest).squared || (d2 == (*closest).squared && h < (*closest).slot);
+    if d2 < sphere * sphere && nearer {
+        *closest = Closest(h, d2);
+    }
+}
+
+/// Makes the next radius of a slot at least this.
+fn cover(slot: u32, distance: vec3<f32>) {
+    atomicMax(&next_radii[params.points + slot], bitcast<u32>(COVER * sqrt(dot3(distance, distance))));
+}
+
+/// The centre's radius covers N', those of N' cover the centre and their neighbours there. A point without new
+/// neighbours keeps its radius.
+fn store_radii(p: u32) {
+    var farthest = 0.0;
+    for (var i = 0u; i < ring.size; i++) {
+        let slot = slot_at(i);
+        let d = offset_of(slot);
+        farthest = max(farthest, dot3(d, d));
+        cover(slot, d);
+        if directed_gap(i) < PI {
+            let next = slot_at(next_member(i));
+            let side = offset_of(next) - d;
+            cover(slot, side);
+            cover(next, side);
+        }
+    }
+    let radius = select(COVER * sqrt(farthest), ring.radius, ring.size == 0u);
+    atomicStore(&next_radii[p], bitcast<u32>(radius));
+}
