@@ -11,6 +11,9 @@
 @group(0) @binding(7) var<storage, read_write> owners: array<u32>;
 @group(0) @binding(8) var<storage, read_write> states: array<u32>;
 
+/// Whether the simplifications of section 7 are made.
+override simplified: bool = false;
+
 @compute @workgroup_size(64)
 fn candidates(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let p = linear_index(id, groups);
@@ -36,7 +39,7 @@ fn candidate(p: u32, slot: u32) -> bool {
     }
     let triangle = triangle_of(corners);
     var position: vec3<f32>;
-    if params.simplified == 1u {
+    if simplified {
         position = center_of_gravity(triangle);
     } else {
         position = displaced_center(triangle);
@@ -46,7 +49,7 @@ fn candidate(p: u32, slot: u32) -> bool {
         return false;
     }
     var normal: vec3<f32>;
-    if params.simplified == 1u {
+    if simplified {
         // The triangle must have an area; its curved normal is taken when it is inserted.
         normal = flat_cross(triangle, rho);
     } else {

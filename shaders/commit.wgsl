@@ -14,6 +14,9 @@
 /// Three corners of each new point's triangle.
 @group(0) @binding(10) var<storage, read_write> parents: array<u32>;
 
+/// Whether the simplifications of section 7 are made.
+override simplified: bool = false;
+
 @compute @workgroup_size(64)
 fn commit(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let index = linear_index(id, groups);
@@ -29,7 +32,7 @@ fn append_point(slot: u32, rank: u32) {
     let corners = fan_triangle(owners[slot], slot);
     var position = candidate_positions[slot].xyz;
     var normal = candidate_normals[slot].xyz;
-    if params.simplified == 1u {
+    if simplified {
         // Section 7, simplification 4: the displacement is computed for inserted points only.
         let triangle = triangle_of(corners);
         position = displaced_center(triangle);

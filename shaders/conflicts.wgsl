@@ -12,18 +12,29 @@
 @group(0) @binding(8) var<storage, read_write> conflict_entries: array<u32>;
 @group(0) @binding(9) var<storage, read_write> counters: Counters;
 
+/// What a point brings along: its centre, the square of λ1 r and its slots.
+struct Own {
+    p: u32,
+    first: u32,
+    after: u32,
+    near_squared: f32,
+    center: vec3<f32>,
+}
+
 @compute @workgroup_size(64)
 fn conflicts(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let p = linear_index(id, groups);
     if p >= params.points {
         return;
     }
-    let radius = reach_of_conflicts(p);
+    let near = params.lambda1 * points[p].radius;
+    let own = Own(p, ring_starts[p], ring_starts[p + 1u], near * near, points[p].position);
+    let radius = reach_of_conflicts(own, near);
     // One entry for each candidate that conflicts: an upper bound of the list, whose points are found repeatedly.
     var bound = 0u;
-    var walk = ball_walk(points[p].position, radius);
+    var walk = ball_walk(own.center, radius);
     for (var y = next_entry(&walk); y != NONE; y = next_entry(&walk)) {
-        bound += u32(conflicting(p, y));
+        bound += u32(conflicting(own, y));
     }
     let first = atomicAdd(&counters.conflicts, bound);
     conflict_blocks[p] = vec2(first, 0u);
@@ -31,10 +42,10 @@ fn conflicts(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
         return;
     }
     var size = 0u;
-    walk = ball_walk(points[p].position, radius);
+    walk = ball_walk(own.center, radius);
     for (var y = next_entry(&walk); y != NONE; y = next_entry(&walk)) {
         let q = owners[y];
-        if !listed(first, size, q) && conflicting(p, y) {
+        if !listed(first, size, q) && conflicting(own, y) {
             conflict_entries[first + size] = q;
             size += 1u;
         }
@@ -42,31 +53,30 @@ fn conflicts(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
     conflict_blocks[p] = vec2(first, size);
 }
 
-/// Radius around p that holds all its balls.
-fn reach_of_conflicts(p: u32) -> f32 {
-    var reach = params.lambda1 * points[p].radius;
-    for (var x = ring_starts[p]; x < ring_starts[p + 1u]; x++) {
+/// Radius around the centre that holds all balls: λ1 r around it, λ2 ρ around its candidates.
+fn reach_of_conflicts(own: Own, near: f32) -> f32 {
+    var reach = near;
+    for (var x = own.first; x < own.after; x++) {
         let candidate = candidate_positions[x];
         if candidate.w > 0.0 {
-            let d = candidate.xyz - points[p].position;
+            let d = candidate.xyz - own.center;
             reach = max(reach, sqrt(dot3(d, d)) + params.lambda2 * candidate.w);
         }
     }
     return reach;
 }
 
-/// Whether candidate y belongs to another point and lies in one of p's balls.
-fn conflicting(p: u32, y: u32) -> bool {
-    if owners[y] == p {
+/// Whether candidate y belongs to another point and lies in one of the balls.
+fn conflicting(own: Own, y: u32) -> bool {
+    if owners[y] == own.p {
         return false;
     }
     let position = candidate_positions[y].xyz;
-    let near = params.lambda1 * points[p].radius;
-    let from_p = position - points[p].position;
-    if dot3(from_p, from_p) < near * near {
+    let from_center = position - own.center;
+    if dot3(from_center, from_center) < own.near_squared {
         return true;
     }
-    for (var x = ring_starts[p]; x < ring_starts[p + 1u]; x++) {
+    for (var x = own.first; x < own.after; x++) {
         let candidate = candidate_positions[x];
         let d = position - candidate.xyz;
         let sphere = params.lambda2 * candidate.w;

@@ -14,6 +14,9 @@
 @group(0) @binding(6) var<storage, read_write> ring_starts: array<u32>;
 @group(0) @binding(7) var<storage, read_write> counters: Counters;
 
+/// The accurate neighbourhood N^g, or else the fuzzy one N^f.
+override accurate: bool = true;
+
 const REMOVED: u32 = 1u;
 
 @compute @workgroup_size(64)
@@ -91,7 +94,7 @@ fn consistent_ball(p: u32, first: u32) -> u32 {
             continue;
         }
         var scale = inverse;
-        if params.accurate == 1u {
+        if accurate {
             // The geodesic projection q' (eq. 9).
             scale = (geodesic_distance(d, center.normal, normal) * inverse) / sqrt(q2);
         }
@@ -103,7 +106,7 @@ fn consistent_ball(p: u32, first: u32) -> u32 {
 
 /// The vector whose fuzzy plane is tested: q' - p for the accurate neighbourhood, p_i - p for the fuzzy one.
 fn plane_vector(center: Point, i: u32) -> vec3<f32> {
-    if params.accurate == 1u {
+    if accurate {
         return vec3(bitcast<f32>(arena[i].y), bitcast<f32>(arena[i].z), 0.0);
     }
     return (points[arena[i].x].position - center.position) * (1.0 / center.radius);

@@ -2,6 +2,9 @@
 //
 // Expects `points`, `candidate_positions`, `candidate_normals`, `next_radii` and `arena`.
 
+/// Whether the simplifications of section 7 are made.
+override simplified: bool = false;
+
 /// Radii exceed the distances they must cover by this factor, so that rounding can't lose the farthest ring.
 const COVER: f32 = 1.02;
 /// A gap or an angle must be wider by this factor to be preferred to an earlier one: regular grids tie.
@@ -96,7 +99,7 @@ fn measured_gap(i: u32) -> f32 {
     let b = slot_at(next_member(i));
     let from_a = offset_of(a) * ring.inverse_radius;
     let from_b = offset_of(b) * ring.inverse_radius;
-    if params.simplified == 1u {
+    if simplified {
         return angle_between(from_a, from_b);
     }
     return curved_angle(Corner(from_a, candidate_normals[a].xyz), Corner(from_b, candidate_normals[b].xyz));

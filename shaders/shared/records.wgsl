@@ -22,10 +22,6 @@ struct Params {
     theta_c: f32,
     lambda1: f32,
     lambda2: f32,
-    /// 1 for the accurate neighbourhood, 0 for the fuzzy one.
-    accurate: u32,
-    /// 1 for the simplifications of section 7.
-    simplified: u32,
     /// Number of points of this level.
     points: u32,
     /// Number of candidate slots: entries of all rings.

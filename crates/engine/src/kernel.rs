@@ -15,16 +15,18 @@ pub struct Kernel {
 }
 
 impl Kernel {
-    /// Compiles a kernel for a device, in the device's mode.
+    /// Compiles a kernel for a device, in the device's mode. `constants` are values of its `override`s; those that it
+    /// does not declare are left out.
     ///
     /// # Errors
     /// The text is no valid WGSL, or the driver refuses it.
-    pub fn new(gpu: &Gpu, shader: &Shader) -> Result<Self, Error> {
+    pub fn new(gpu: &Gpu, shader: &Shader, constants: &[(&str, f64)]) -> Result<Self, Error> {
         let failed = |message: String| Error::Kernel { name: shader.name, message };
         let source = shader.source();
         let module = naga::front::wgsl::parse_str(&source)
             .map_err(|e| failed(e.emit_to_string_with_path(&source, shader.name)))?;
         let entries = layout_entries(&module);
+        let constants = declared(&module, constants);
         gpu.guarded(|| {
             let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
                 label: Some(shader.name),
@@ -37,7 +39,7 @@ impl Kernel {
                     immediate_size: 0,
                 });
             let compiled = match gpu.mode {
-                Mode::Exact => exact_module(gpu, shader, &module).map_err(failed)?,
+                Mode::Exact => exact_module(gpu, shader, &module, &constants).map_err(failed)?,
                 Mode::Plain => gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
                     label: Some(shader.name),
                     source: wgpu::ShaderSource::Wgsl(source.as_str().into()),
@@ -48,7 +50,11 @@ impl Kernel {
                 layout: Some(&pipeline_layout),
                 module: &compiled,
                 entry_point: Some(shader.name),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    // The exact text has them built in.
+                    constants: if gpu.mode == Mode::Exact { &[] } else { &constants },
+                    ..Default::default()
+                },
                 cache: None,
             });
             Ok(Self { name: shader.name, pipeline, layout })
@@ -67,6 +73,12 @@ impl Kernel {
     pub(crate) fn layout(&self) -> &wgpu::BindGroupLayout {
         &self.layout
     }
+}
+
+/// The constants that the module declares as `override`s.
+fn declared<'a>(module: &naga::Module, constants: &[(&'a str, f64)]) -> Vec<(&'a str, f64)> {
+    let names: Vec<_> = module.overrides.iter().filter_map(|(_, o)| o.name.as_deref()).collect();
+    constants.iter().filter(|(name, _)| names.contains(name)).copied().collect()
 }
 
 /// The bindings of group 0 as the text declares them. Binding 1 is the uniform that changes from dispatch to dispatch.
@@ -99,8 +111,9 @@ fn exact_module(
     gpu: &Gpu,
     shader: &Shader,
     module: &naga::Module,
+    constants: &[(&str, f64)],
 ) -> Result<wgpu::ShaderModule, String> {
-    let words = exact_spirv(shader.name, module)?;
+    let words = exact_spirv(shader.name, module, constants)?;
     let entry_point = wgpu::PassthroughShaderEntryPoint {
         name: shader.name.into(),
         workgroup_size: (WORKGROUP_SIZE, 1, 1),
@@ -117,15 +130,24 @@ fn exact_module(
     })
 }
 
-/// Translates a module and decorates its float operations.
+/// Translates a module, with the values of its `override`s built in, and decorates its float operations.
 ///
 /// # Errors
 /// The module is not valid.
-pub fn exact_spirv(name: &str, module: &naga::Module) -> Result<Vec<u32>, String> {
+pub fn exact_spirv(
+    name: &str,
+    module: &naga::Module,
+    constants: &[(&str, f64)],
+) -> Result<Vec<u32>, String> {
     use naga::valid::{Capabilities, ValidationFlags, Validator};
     let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
         .validate(module)
         .map_err(|e| e.into_inner().to_string())?;
+    let values = constants.iter().map(|&(name, value)| (name.to_owned(), value)).collect();
+    let entry = (naga::ShaderStage::Compute, name);
+    let (module, info) =
+        naga::back::pipeline_constants::process_overrides(module, &info, Some(entry), &values)
+            .map_err(|e| e.to_string())?;
     let checked = naga::proc::BoundsCheckPolicy::Restrict;
     let options = naga::back::spv::Options {
         lang_version: (1, 3),
@@ -141,7 +163,7 @@ pub fn exact_spirv(name: &str, module: &naga::Module) -> Result<Vec<u32>, String
         shader_stage: naga::ShaderStage::Compute,
         entry_point: name.into(),
     };
-    let words = naga::back::spv::write_vec(module, &info, &options, Some(&pipeline));
+    let words = naga::back::spv::write_vec(&module, &info, &options, Some(&pipeline));
     Ok(forbid_contraction(&words.map_err(|e| e.to_string())?))
 }
 

@@ -1,7 +1,7 @@
 //! Records that kernels and host share: mirrors of `shaders/shared/records.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
-use surfine_points::{GridShape, Neighborhood, RefineParams};
+use surfine_points::{GridShape, RefineParams};
 
 /// A point in device memory: 32 bytes, fit for a vertex buffer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -30,8 +30,6 @@ pub struct Params {
     pub theta_c: f32,
     pub lambda1: f32,
     pub lambda2: f32,
-    pub accurate: u32,
-    pub simplified: u32,
     pub points: u32,
     pub slots: u32,
     pub level: u32,
@@ -48,8 +46,6 @@ impl Params {
             theta_c: params.theta_c,
             lambda1: params.lambda1,
             lambda2: params.lambda2,
-            accurate: u32::from(params.effective_neighborhood() == Neighborhood::Accurate),
-            simplified: u32::from(params.simplified),
             ..Self::default()
         }
     }

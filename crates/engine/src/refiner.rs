@@ -4,7 +4,7 @@ use crate::buffers::{self, Buffer};
 use crate::commands::Uniforms;
 use crate::records::{Counters, Params, Point};
 use crate::scan::Scan;
-use crate::stages::{Buffers, Kernels, Step};
+use crate::stages::{Buffers, Kernels, Step, Variant};
 use crate::{Error, Gpu, choose_adapter};
 use std::time::{Duration, Instant};
 use surfine_points::{
@@ -15,7 +15,8 @@ use surfine_points::{
 #[derive(Debug)]
 pub struct Refiner {
     gpu: Gpu,
-    kernels: Kernels,
+    /// Compiled once for each variant that was asked for.
+    kernels: Vec<(Variant, Kernels)>,
     uniforms: Uniforms,
     buffers: Buffers,
     scan: Scan,
@@ -73,9 +74,24 @@ impl Refiner {
     /// # Errors
     /// As [`Refiner::with_device`].
     pub fn with_gpu(gpu: Gpu) -> Result<Self, Error> {
-        let (kernels, uniforms) = (Kernels::new(&gpu)?, Uniforms::new(&gpu));
+        let uniforms = Uniforms::new(&gpu);
         let (buffers, scan) = (Buffers::new(&gpu)?, Scan::new(&gpu)?);
-        Ok(Self { gpu, kernels, uniforms, buffers, scan })
+        let mut refiner = Self { gpu, kernels: Vec::new(), uniforms, buffers, scan };
+        refiner.prepare(&RefineParams::default())?;
+        Ok(refiner)
+    }
+
+    /// Compiles the kernels for these parameters, so that the first refinement need not. Those for the default
+    /// parameters are compiled when the refiner is made.
+    ///
+    /// # Errors
+    /// A kernel is refused.
+    pub fn prepare(&mut self, params: &RefineParams) -> Result<(), Error> {
+        let variant = variant(params);
+        if self.kernels.iter().all(|(v, _)| *v != variant) {
+            self.kernels.push((variant, Kernels::new(&self.gpu, variant)?));
+        }
+        Ok(())
     }
 
     /// The device.
@@ -118,6 +134,7 @@ impl Refiner {
     ) -> Result<GpuRefined, Error> {
         params.validate()?;
         points.validate()?;
+        self.prepare(params)?;
         let gpu = self.gpu.clone();
         gpu.guarded(|| self.run_levels(points, params, progress))
     }
@@ -140,9 +157,9 @@ impl Refiner {
                 Params { points: count as u32, level, ..Params::new(params).with_grid(&shape) };
             let mut report = if level == 1 {
                 let grid = Grid::build(shape, (0..).zip(points.positions.iter().copied()));
-                self.run_step(step, Some(&grid), 0, &mut clock)?
+                self.run_step(variant(params), step, Some(&grid), 0, &mut clock)?
             } else {
-                self.run_step(step, None, count - points.len(), &mut clock)?
+                self.run_step(variant(params), step, None, count - points.len(), &mut clock)?
             };
             report.stages = clock.stop();
             level_sizes.push(report.points_out);
@@ -160,12 +177,14 @@ impl Refiner {
     /// Runs the stages of one refinement step. `grid` is that of the input; later levels make theirs.
     fn run_step(
         &mut self,
+        variant: Variant,
         params: Params,
         grid: Option<&Grid>,
         earlier: usize,
         clock: &mut Clock<'_>,
     ) -> Result<LevelReport, Error> {
         let Self { gpu, kernels, uniforms, buffers, scan } = self;
+        let (_, kernels) = kernels.iter().find(|(v, _)| *v == variant).expect("it was prepared");
         let mut step = Step { gpu, kernels, uniforms, buffers, scan, params };
         clock.start("grid");
         match grid {
@@ -226,6 +245,11 @@ impl Refiner {
         let GpuRefined { level_sizes, reports, .. } = result;
         Ok(Refined { points: refined, parents, level_sizes, reports })
     }
+}
+
+/// The kernels that parameters need.
+fn variant(params: &RefineParams) -> Variant {
+    (params.effective_neighborhood(), params.simplified)
 }
 
 /// Times the stages and tells the caller where the run stands.

@@ -10,7 +10,7 @@ use crate::records::{Counters, Params, Point};
 use crate::scan::Scan;
 use crate::shaders::SHADERS;
 use crate::{Error, Gpu};
-use surfine_points::Grid;
+use surfine_points::{Grid, Neighborhood};
 
 /// Points whose neighbourhoods are computed together: their scratch memory is used again for the next ones.
 const CHUNK: u32 = 1 << 17;
@@ -19,16 +19,21 @@ const ROUNDS: u32 = 16;
 /// Bytes of a word.
 const WORD: u64 = 4;
 
-/// All kernels of a device.
+/// What kernels are compiled for, besides the device.
+pub(crate) type Variant = (Neighborhood, bool);
+
+/// The kernels of a device for one variant.
 #[derive(Debug)]
 pub(crate) struct Kernels(Vec<Kernel>);
 
 impl Kernels {
-    pub(crate) fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self(SHADERS.iter().map(|s| Kernel::new(gpu, s)).collect::<Result<_, _>>()?))
+    pub(crate) fn new(gpu: &Gpu, (neighborhood, simplified): Variant) -> Result<Self, Error> {
+        let accurate = neighborhood == Neighborhood::Accurate;
+        let constants = [("accurate", f64::from(accurate)), ("simplified", f64::from(simplified))];
+        Ok(Self(SHADERS.iter().map(|s| Kernel::new(gpu, s, &constants)).collect::<Result<_, _>>()?))
     }
 
-    fn get(&self, name: &str) -> &Kernel {
+    pub(crate) fn get(&self, name: &str) -> &Kernel {
         self.0.iter().find(|k| k.name() == name).expect("every kernel of a stage is in the table")
     }
 }

@@ -14,7 +14,7 @@ const SPACING_RANK: usize = 6;
 /// A cell that is still open with all neighbours within this many spacings lies at a border. Larger values bring
 /// false neighbours across creases, where the points beyond have opposing normals; smaller ones lose true neighbours
 /// of random points.
-const BORDER_REACH: f64 = 3.5;
+const BORDER_REACH: f64 = 4.0;
 /// The cell of a border point ends this many spacings from it: bisectors of points along the border that meet farther
 /// out make no neighbours.
 const BORDER_CELL: f64 = 1.0;

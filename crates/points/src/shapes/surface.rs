@@ -291,3 +291,15 @@ fn increasing_root(mut low: f64, mut high: f64, f: impl Fn(f64) -> (f64, f64)) -
     }
     x
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn areas_are_those_of_the_formulas() {
+        // Legendre's formula with elliptic integrals, and polar coordinates, both by 20,000 steps of Simpson's rule.
+        approx::assert_relative_eq!(Shape::Ellipsoid.area(), 6.328075230757, max_relative = 1e-9);
+        approx::assert_relative_eq!(Shape::Saddle.area(), 4.756724258455, max_relative = 1e-9);
+    }
+}
