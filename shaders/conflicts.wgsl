@@ -30,27 +30,26 @@ fn conflicts(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
     let near = params.lambda1 * points[p].radius;
     let own = Own(p, ring_starts[p], ring_starts[p + 1u], near * near, points[p].position);
     let radius = reach_of_conflicts(own, near);
-    // One entry for each candidate that conflicts: an upper bound of the list, whose points are found repeatedly.
-    var bound = 0u;
+    var size = 0u;
     var walk = ball_walk(own.center, radius);
     for (var y = next_entry(&walk); y != NONE; y = next_entry(&walk)) {
-        bound += u32(conflicting(own, y));
+        size += u32(first_conflicting(own, y));
     }
-    let first = atomicAdd(&counters.conflicts, bound);
+    let first = atomicAdd(&counters.conflicts, size);
     conflict_blocks[p] = vec2(first, 0u);
-    if first + bound > params.conflict_entries {
+    if first + size > params.conflict_entries {
         return;
     }
-    var size = 0u;
+    conflict_blocks[p] = vec2(first, size);
+    var next = first;
     walk = ball_walk(own.center, radius);
     for (var y = next_entry(&walk); y != NONE; y = next_entry(&walk)) {
-        let q = owners[y];
-        if !listed(first, size, q) && conflicting(own, y) {
-            conflict_entries[first + size] = q;
-            size += 1u;
+        if first_conflicting(own, y) {
+            conflict_entries[next] = owners[y];
+            next += 1u;
         }
     }
-    conflict_blocks[p] = vec2(first, size);
+    note_cut_loops(p);
 }
 
 /// Radius around the centre that holds all balls: λ1 r around it, λ2 ρ around its candidates.
@@ -66,11 +65,8 @@ fn reach_of_conflicts(own: Own, near: f32) -> f32 {
     return reach;
 }
 
-/// Whether candidate y belongs to another point and lies in one of the balls.
+/// Whether candidate y lies in one of the balls.
 fn conflicting(own: Own, y: u32) -> bool {
-    if owners[y] == own.p {
-        return false;
-    }
     let position = candidate_positions[y].xyz;
     let from_center = position - own.center;
     if dot3(from_center, from_center) < own.near_squared {
@@ -87,11 +83,16 @@ fn conflicting(own: Own, y: u32) -> bool {
     return false;
 }
 
-fn listed(first: u32, size: u32, q: u32) -> bool {
-    for (var i = first; i < first + size; i++) {
-        if conflict_entries[i] == q {
-            return true;
+/// Whether candidate y conflicts and is the first one of its owner that does: so each point is listed once.
+fn first_conflicting(own: Own, y: u32) -> bool {
+    let q = owners[y];
+    if q == own.p || !conflicting(own, y) {
+        return false;
+    }
+    for (var earlier = ring_starts[q]; earlier < y; earlier++) {
+        if candidate_positions[earlier].w > 0.0 && conflicting(own, earlier) {
+            return false;
         }
     }
-    return false;
+    return true;
 }

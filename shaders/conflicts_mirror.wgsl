@@ -26,6 +26,7 @@ fn conflicts_mirror(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_w
             mirror_links[link] = vec2(p, atomicExchange(&mirror_heads[q], link + 1u));
         }
     }
+    note_cut_loops(p);
 }
 
 /// Whether q's own list holds p.

@@ -31,6 +31,7 @@ fn insertion(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
     gather(p);
     complete(p);
     store_radii(p);
+    note_cut_loops(p);
 }
 
 /// Takes room in the arena for N', the angles of the candidates and Y; false if there is too little.
@@ -68,12 +69,14 @@ fn gather(p: u32) {
         let d = offset_of(slot);
         let d2 = dot3(d, d);
         if d2 < near * near {
-            place(slot, angle_of(slot));
+            set_member(ring.size, slot, angle_of(slot));
+            ring.size += 1u;
         } else if d2 < ring.radius * ring.radius {
             arena[ring.outer + ring.outer_size] = slot;
             ring.outer_size += 1u;
         }
     }
+    sort_members();
     for (var i = 0u; i < ring.size; i++) {
         set_gap(i, measured_gap(i));
     }

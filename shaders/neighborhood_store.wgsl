@@ -2,7 +2,7 @@
 // One invocation per point. dispatch: first point, number of points.
 
 @group(0) @binding(2) var<storage, read> arena: array<vec4<u32>>;
-@group(0) @binding(3) var<storage, read> blocks: array<u32>;
+@group(0) @binding(3) var<storage, read> blocks: array<vec2<u32>>;
 @group(0) @binding(4) var<storage, read> ring_starts: array<u32>;
 /// Neighbour and bits of its angle.
 @group(0) @binding(5) var<storage, read_write> ring_entries: array<vec2<u32>>;
@@ -21,7 +21,7 @@ fn neighborhood_store(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num
         return;
     }
     for (var i = 0u; i < size; i++) {
-        let entry = arena[blocks[p] + i];
+        let entry = arena[blocks[p].x + i];
         ring_entries[start + i] = entry.xw;
     }
 }

@@ -105,18 +105,56 @@ fn measured_gap(i: u32) -> f32 {
     return curved_angle(Corner(from_a, candidate_normals[a].xyz), Corner(from_b, candidate_normals[b].xyz));
 }
 
-/// Puts a new point into N' by angle, ties by slot, and returns its place.
+fn set_member(i: u32, slot: u32, angle: f32) {
+    arena[ring.members + MEMBER_WORDS * i] = slot;
+    arena[ring.members + MEMBER_WORDS * i + 1u] = bitcast<u32>(angle);
+}
+
+/// Whether a new point comes before member i: by angle, ties by slot.
+fn precedes(slot: u32, angle: f32, i: u32) -> bool {
+    return angle < angle_at(i) || (angle == angle_at(i) && slot < slot_at(i));
+}
+
+/// Puts N' in order: a heap sort, since balls that reach across a hole hold hundreds.
+fn sort_members() {
+    for (var i = ring.size / 2u; i > 0u; i--) {
+        sift_down(i - 1u, ring.size);
+    }
+    for (var end = ring.size; end > 1u; end--) {
+        let slot = slot_at(end - 1u);
+        let angle = angle_at(end - 1u);
+        set_member(end - 1u, slot_at(0u), angle_at(0u));
+        set_member(0u, slot, angle);
+        sift_down(0u, end - 1u);
+    }
+}
+
+fn sift_down(root: u32, size: u32) {
+    let slot = slot_at(root);
+    let angle = angle_at(root);
+    var at = root;
+    for (var child = 2u * at + 1u; child < size; child = 2u * at + 1u) {
+        if child + 1u < size && precedes(slot_at(child), angle_at(child), child + 1u) {
+            child += 1u;
+        }
+        if !precedes(slot, angle, child) {
+            break;
+        }
+        set_member(at, slot_at(child), angle_at(child));
+        at = child;
+    }
+    set_member(at, slot, angle);
+}
+
+/// Puts a new point into its place in N' and returns that.
 fn place(slot: u32, angle: f32) -> u32 {
     var at = ring.size;
-    while at > 0u && (angle < angle_at(at - 1u) || (angle == angle_at(at - 1u) && slot < slot_at(at - 1u))) {
-        let to = ring.members + MEMBER_WORDS * at;
-        for (var word = to; word < to + MEMBER_WORDS; word++) {
-            arena[word] = arena[word - MEMBER_WORDS];
-        }
+    while at > 0u && precedes(slot, angle, at - 1u) {
+        set_member(at, slot_at(at - 1u), angle_at(at - 1u));
+        set_gap(at, gap_of(at - 1u));
         at -= 1u;
     }
-    arena[ring.members + MEMBER_WORDS * at] = slot;
-    arena[ring.members + MEMBER_WORDS * at + 1u] = bitcast<u32>(angle);
+    set_member(at, slot, angle);
     ring.size += 1u;
     return at;
 }

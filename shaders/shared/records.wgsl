@@ -56,6 +56,8 @@ struct Counters {
     ball_low: atomic<u32>,
     /// The same, high word.
     ball_high: atomic<u32>,
+    /// Invocations in which the driver cut loops short; see cut_loops.wgsl.
+    cut_loops: atomic<u32>,
 }
 
 /// No entry: the largest index.

@@ -1,1 +1,67 @@
-fn main() {}
+//! The `surfine` program: refines clouds of oriented points, on the GPU or the CPU.
+
+mod adapters;
+mod args;
+mod backend;
+mod files;
+mod refine;
+mod report;
+mod sample;
+mod watch;
+
+use args::{Cli, Command};
+use std::io::{ErrorKind, Write};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    quiet_mesa();
+    let cli = Cli::from_command_line();
+    let result = match &cli.command {
+        Command::Refine(args) => refine::run(args),
+        Command::Adapters(args) => adapters::run(args),
+        Command::Sample(args) => sample::run(args),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Failure(message)) => {
+            warn(&format!("error: {message}"));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Tells a Mesa layer to stay out: it chooses among devices for windows and complains where there are none.
+fn quiet_mesa() {
+    if std::env::var_os("NODEVICE_SELECT").is_none() {
+        // SAFETY: this is the first statement of the program, so no other thread reads the environment.
+        unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
+    }
+}
+
+/// Why a command failed: what, where and how to mend it.
+#[derive(Debug)]
+struct Failure(String);
+
+impl<E: std::error::Error> From<E> for Failure {
+    fn from(error: E) -> Self {
+        Self(error.to_string())
+    }
+}
+
+/// Prints one line on standard error; names of files and drivers' texts must not make it two.
+fn warn(message: &str) {
+    let message = message.replace(['\n', '\r'], " ");
+    // There is nowhere left to complain if this fails.
+    let _ = writeln!(std::io::stderr(), "surfine: {message}");
+}
+
+/// Prints on standard output. A reader that has seen enough (`| head`) is no failure.
+fn print(text: &str) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure(format!("standard output cannot be written: {e}: check where it leads")))
+        }
+        _ => Ok(()),
+    }
+}

@@ -36,6 +36,7 @@ pub struct Params {
     pub arena_words: u32,
     pub ring_entries: u32,
     pub conflict_entries: u32,
+    pub padding: [u32; 2],
 }
 
 impl Params {
@@ -78,4 +79,5 @@ pub struct Counters {
     pub largest_ball: u32,
     pub ball_low: u32,
     pub ball_high: u32,
+    pub cut_loops: u32,
 }

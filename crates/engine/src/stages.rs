@@ -96,6 +96,8 @@ pub(crate) struct Step<'a> {
     pub(crate) buffers: &'a mut Buffers,
     pub(crate) scan: &'a mut Scan,
     pub(crate) params: Params,
+    /// Size of the largest Euclidean neighbourhood of the step.
+    pub(crate) largest_ball: u32,
 }
 
 impl Step<'_> {
@@ -116,7 +118,16 @@ impl Step<'_> {
         parts.extend(words.iter().map(|(buffer, i)| (buffer.raw(), WORD * u64::from(*i), WORD)));
         let bytes = read_parts(self.gpu, &parts)?;
         let (counters, words) = bytes.split_at(size as usize);
-        Ok((bytemuck::pod_read_unaligned(counters), bytemuck::pod_collect_to_vec(words)))
+        let counters: Counters = bytemuck::pod_read_unaligned(counters);
+        if counters.cut_loops > 0 {
+            return Err(self.crowded(&counters));
+        }
+        Ok((counters, bytemuck::pod_collect_to_vec(words)))
+    }
+
+    fn crowded(&self, counters: &Counters) -> Error {
+        let neighbors = counters.largest_ball.max(self.largest_ball);
+        Error::Crowded { neighbors, adapter: self.gpu.name.clone() }
     }
 
     fn cells(&self) -> u32 {
@@ -159,7 +170,7 @@ impl Step<'_> {
     pub(crate) fn neighborhood(&mut self) -> Result<Counters, Error> {
         let n = self.params.points;
         let mut chunk = n.min(CHUNK);
-        self.buffers.blocks.reserve(self.gpu, WORD * u64::from(n))?;
+        self.buffers.blocks.reserve(self.gpu, 2 * WORD * u64::from(n))?;
         self.buffers.ring_starts.reserve(self.gpu, WORD * (u64::from(n) + 1))?;
         self.buffers.ring_entries.reserve(self.gpu, 2 * WORD * 7 * u64::from(n))?;
         self.buffers.arena.reserve(self.gpu, 4 * WORD * 24 * u64::from(chunk))?;
@@ -172,6 +183,7 @@ impl Step<'_> {
             let enough = self.make_room_in_arena(&counters, &mut chunk)?;
             if enough && totals[0] <= self.params.ring_entries {
                 self.params.slots = totals[0];
+                self.largest_ball = counters.largest_ball;
                 return Ok(counters);
             }
             self.buffers.ring_entries.reserve(self.gpu, 2 * WORD * u64::from(totals[0]))?;
@@ -184,18 +196,24 @@ impl Step<'_> {
         let mut commands = self.commands();
         commands.clear(&b.counters, words_of(&b.counters).into());
         commands.clear(&b.ring_starts, 1);
-        let outputs = [&b.arena, &b.blocks, &b.ring_starts, &b.counters];
-        let inputs = [&b.points, &b.grid];
-        let select =
-            commands.bind(self.kernels.get("neighborhood"), &[&inputs[..], &outputs].concat());
+        let k = self.kernels;
+        let ball = [&b.points, &b.grid, &b.arena, &b.blocks, &b.counters];
+        let ball = commands.bind(k.get("neighborhood_ball"), &ball);
+        let badness = [&b.points, &b.blocks, &b.arena, &b.counters];
+        let badness = commands.bind(k.get("neighborhood_badness"), &badness);
+        let ring = [&b.blocks, &b.arena, &b.ring_starts, &b.counters];
+        let ring = commands.bind(k.get("neighborhood_ring"), &ring);
         let store = [&b.arena, &b.blocks, &b.ring_starts, &b.ring_entries];
-        let store = commands.bind(self.kernels.get("neighborhood_store"), &store);
+        let store = commands.bind(k.get("neighborhood_store"), &store);
         for first in (0..n).step_by(chunk as usize) {
             let count = chunk.min(n - first);
             commands.clear(&b.counters, 1);
-            commands.dispatch(&select, [first, count, 0, 0], count);
+            let words = [first, count, 0, 0];
+            commands.dispatch(&ball, words, count);
+            commands.dispatch(&badness, words, self.params.arena_words / 4);
+            commands.dispatch(&ring, words, count);
             self.record_scan(&mut commands, &b.ring_starts, first, count + 1);
-            commands.dispatch(&store, [first, count, 0, 0], count);
+            commands.dispatch(&store, words, count);
         }
         commands.finish()
     }
@@ -211,8 +229,7 @@ impl Step<'_> {
         } else if *chunk > 1 {
             *chunk = chunk.div_ceil(2);
         } else {
-            let (neighbors, adapter) = (counters.largest_ball, self.gpu.name.clone());
-            return Err(Error::Crowded { neighbors, adapter });
+            return Err(self.crowded(counters));
         }
         Ok(false)
     }
@@ -243,7 +260,7 @@ impl Step<'_> {
         let n = u64::from(self.params.points);
         self.buffers.conflict_blocks.reserve(self.gpu, 2 * WORD * n)?;
         self.buffers.mirror_heads.reserve(self.gpu, WORD * n)?;
-        self.buffers.conflict_entries.reserve(self.gpu, WORD * 24 * n)?;
+        self.buffers.conflict_entries.reserve(self.gpu, WORD * 12 * n)?;
         self.buffers.mirror_links.reserve(self.gpu, 2 * WORD * 2 * n)?;
         loop {
             self.params.conflict_entries = words_of(&self.buffers.conflict_entries);

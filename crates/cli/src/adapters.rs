@@ -1,0 +1,98 @@
+//! `surfine adapters`.
+
+use crate::args::AdaptersArgs;
+use crate::{Failure, print};
+use serde::Serialize;
+use std::fmt::Write;
+use surfine::wgpu::{self, AdapterInfo, DeviceType};
+use surfine::{Mode, adapters, choose_adapter};
+
+/// What the program says about an adapter.
+#[derive(Serialize)]
+struct Entry {
+    name: String,
+    /// `hardware` or `software`.
+    r#type: &'static str,
+    /// What kind of device it is, finer than the type.
+    kind: &'static str,
+    backend: String,
+    driver: String,
+    /// `exact` or `plain`.
+    mode: &'static str,
+    /// Whether `--backend gpu` takes it.
+    chosen: bool,
+}
+
+#[derive(Serialize)]
+struct List {
+    adapters: Vec<Entry>,
+    /// What `--backend auto` takes: `gpu` or `cpu`.
+    auto_backend: &'static str,
+}
+
+pub(crate) fn run(args: &AdaptersArgs) -> Result<(), Failure> {
+    let chosen = choose_adapter(None)?.get_info();
+    let list = List {
+        auto_backend: if is_software(&chosen) { "cpu" } else { "gpu" },
+        adapters: entries(&adapters(), &chosen),
+    };
+    if args.json {
+        return print(&format!("{}\n", serde_json::to_string_pretty(&list)?));
+    }
+    print(&text(&list))
+}
+
+pub(crate) fn is_software(info: &AdapterInfo) -> bool {
+    info.device_type == DeviceType::Cpu
+}
+
+fn entries(adapters: &[wgpu::Adapter], chosen: &AdapterInfo) -> Vec<Entry> {
+    // Equal adapters can't be told apart: the first of them is the chosen one.
+    let position = adapters.iter().position(|a| a.get_info() == *chosen);
+    let entry = |(i, adapter)| Entry { chosen: Some(i) == position, ..entry(adapter) };
+    adapters.iter().enumerate().map(entry).collect()
+}
+
+fn entry(adapter: &wgpu::Adapter) -> Entry {
+    let info = adapter.get_info();
+    Entry {
+        r#type: if is_software(&info) { "software" } else { "hardware" },
+        kind: kind(info.device_type),
+        mode: mode(adapter, &info).name(),
+        driver: format!("{} {}", info.driver, info.driver_info).trim().into(),
+        backend: info.backend.to_string(),
+        name: info.name,
+        chosen: false,
+    }
+}
+
+fn kind(kind: DeviceType) -> &'static str {
+    match kind {
+        DeviceType::DiscreteGpu => "discrete",
+        DeviceType::IntegratedGpu => "integrated",
+        DeviceType::VirtualGpu => "virtual",
+        DeviceType::Cpu => "cpu",
+        DeviceType::Other => "other",
+    }
+}
+
+/// The mode that [`surfine::Gpu::open`] will find.
+fn mode(adapter: &wgpu::Adapter, info: &AdapterInfo) -> Mode {
+    let passthrough = adapter.features().contains(wgpu::Features::PASSTHROUGH_SHADERS);
+    if info.backend == wgpu::Backend::Vulkan && passthrough { Mode::Exact } else { Mode::Plain }
+}
+
+fn text(list: &List) -> String {
+    let mut text = String::new();
+    for entry in &list.adapters {
+        let mark = if entry.chosen { '*' } else { ' ' };
+        let Entry { name, r#type, kind, backend, driver, mode, .. } = entry;
+        // Writing to a string can't fail.
+        let _ = writeln!(text, "{mark} {name}: {type} ({kind}), {backend}, {driver}, mode {mode}");
+    }
+    text += match list.auto_backend {
+        "gpu" => "* is taken by `refine`, unless --backend or --adapter say otherwise\n",
+        _ => "* is taken by --backend gpu; without it `refine` takes the CPU, which is faster\n",
+    };
+    text
+}

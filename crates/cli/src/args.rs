@@ -1,0 +1,274 @@
+//! The command line.
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::error::ErrorKind;
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+use surfine::{Neighborhood, RefineParams};
+use surfine_points::shapes::Shape;
+
+const EXAMPLES: &str = "\
+Examples:
+  surfine sample torus -n 20000 -o torus.ply    make a cloud to try
+  surfine refine torus.ply -o fine.ply          refine it twice: about 9 times the points
+  surfine adapters                              show what the GPU backend could use
+  surfine help refine                           show all options of a command
+
+Exit codes: 0 success, 1 failure (one line on standard error), 2 wrong usage.";
+
+const REFINE_EXAMPLES: &str = "\
+Examples:
+  surfine refine scan.ply -o fine.ply
+  surfine refine scan.ply -o fine.ply --levels 3 --backend gpu
+  surfine refine scan.ply -o fine.ply --ascii --provenance --quiet
+  surfine refine scan.ply -o fine.ply --json | jq .points_per_second
+
+The points of IN come first in FILE, in their order and unchanged but for their radii; the new points
+follow level by level. Both backends give the same bytes if the adapter's mode is exact. All parameters
+are free of scale; lengths have the unit of IN.";
+
+const ADAPTERS_EXAMPLES: &str = "\
+Examples:
+  surfine adapters
+  surfine adapters --json | jq '.adapters[].name'
+  WGPU_ADAPTER_NAME=llvmpipe surfine adapters
+
+A software adapter computes on the CPU; `refine --backend auto` then takes the CPU backend, which is
+faster. Mode exact: the very bytes of the CPU backend. Mode plain: results can differ in rounding.";
+
+const SAMPLE_EXAMPLES: &str = "\
+Examples:
+  surfine sample sphere -n 1000 -o sphere.ply
+  surfine sample torus -n 50000 -o torus.ply --random --seed 7
+  surfine sample plane -n 400 -o plane.ply --ascii
+
+Sizes: sphere of radius 1; torus of radii 1 and 0.4; ellipsoid of semi-axes 1, 0.7 and 0.45; saddle
+z = 0.4 (x^2 - y^2) and plane z = 0 over the square |x|, |y| <= 1. Points get exact normals and natural
+radii. The same arguments give the same bytes everywhere.";
+
+/// Refines clouds of oriented points on the GPU or the CPU.
+#[derive(Debug, Parser)]
+#[command(name = "surfine", version, after_help = EXAMPLES)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Refine a cloud: keep its points, insert new ones on the smooth surface through them
+    Refine(RefineArgs),
+    /// List the GPU adapters of this machine
+    Adapters(AdaptersArgs),
+    /// Make a cloud on a simple surface
+    Sample(SampleArgs),
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = REFINE_EXAMPLES)]
+pub(crate) struct RefineArgs {
+    /// PLY file of points: x y z, nx ny nz (unit length, outward), radius; more properties are kept
+    #[arg(value_name = "IN")]
+    pub(crate) input: PathBuf,
+    /// PLY file to write, not IN; it appears whole or not at all
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: PathBuf,
+    /// Number of refinement steps, 0 to 20; each multiplies the points by about 3
+    #[arg(long, value_name = "N", default_value = "2", value_parser = levels)]
+    levels: u32,
+    /// Where to compute
+    #[arg(long, value_enum, value_name = "WHERE", default_value_t)]
+    backend: BackendChoice,
+    /// GPU adapter whose name or driver contains NAME, in any case; implies --backend gpu
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
+    /// Which points are neighbors
+    #[arg(long, value_enum, value_name = "KIND", default_value_t)]
+    neighborhood: NeighborhoodChoice,
+    /// Take the paper's four simplifications: faster, for dense smooth clouds; implies fuzzy
+    #[arg(long)]
+    simplified: bool,
+    /// Tolerance angle of the fuzzy planes, above 0 up to 90 degrees
+    #[arg(long, value_name = "DEG", default_value = "30", value_parser = theta_f)]
+    #[arg(allow_negative_numbers = true)]
+    theta_f: f32,
+    /// Largest angle of a complete new neighborhood, above 0 and below 180 degrees
+    #[arg(long, value_name = "DEG", default_value = "89", value_parser = theta_c)]
+    #[arg(allow_negative_numbers = true)]
+    theta_c: f32,
+    /// Share of the radius within which a new point is a new neighbor, above 0 up to 1
+    #[arg(long, value_name = "X", default_value = "0.57735026", value_parser = lambda1)]
+    #[arg(allow_negative_numbers = true)]
+    lambda1: f32,
+    /// Share of a new point's radius that is kept free of others, 0 to 1
+    #[arg(long, value_name = "X", default_value = "0.5", value_parser = lambda2)]
+    #[arg(allow_negative_numbers = true)]
+    lambda2: f32,
+    /// Write decimal text instead of little-endian binary
+    #[arg(long)]
+    pub(crate) ascii: bool,
+    /// Write where each point comes from: properties level, parent0, parent1, parent2
+    #[arg(long)]
+    pub(crate) provenance: bool,
+    /// Number of threads of the CPU backend, 1 to 1024 [default: all cores, or `RAYON_NUM_THREADS`]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    /// Print neither progress nor summary; warnings and errors stay
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+    /// Print the summary as one JSON object, and no progress
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = ADAPTERS_EXAMPLES)]
+pub(crate) struct AdaptersArgs {
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = SAMPLE_EXAMPLES)]
+pub(crate) struct SampleArgs {
+    /// The surface
+    #[arg(value_parser = shape())]
+    pub(crate) shape: Shape,
+    /// Number of points, 0 to 100000000
+    #[arg(short = 'n', long = "points", value_name = "N")]
+    #[arg(value_parser = clap::value_parser!(u32).range(0..=100_000_000))]
+    pub(crate) points: u32,
+    /// PLY file to write; it appears whole or not at all
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: PathBuf,
+    /// Put each point anywhere, with clusters and gaps, instead of evenly (blue noise)
+    #[arg(long)]
+    pub(crate) random: bool,
+    /// Seed of the random numbers, 0 to 2^64 - 1
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    pub(crate) seed: u64,
+    /// Write decimal text instead of little-endian binary
+    #[arg(long)]
+    pub(crate) ascii: bool,
+}
+
+/// What the user wants to compute with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum BackendChoice {
+    /// A hardware GPU if there is one, else the CPU
+    #[default]
+    Auto,
+    /// Any GPU adapter, software ones too
+    Gpu,
+    /// The CPU
+    Cpu,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum NeighborhoodChoice {
+    /// For any sampling
+    #[default]
+    Accurate,
+    /// Faster, for well-sampled clouds
+    Fuzzy,
+}
+
+impl Cli {
+    /// Reads the command line; help, version and wrong usage end the program.
+    pub(crate) fn from_command_line() -> Self {
+        let cli = Self::parse();
+        if let Command::Refine(args) = &cli.command
+            && args.backend == BackendChoice::Cpu
+            && args.adapter.is_some()
+        {
+            let mut root = Self::command();
+            // The usage line of the error is then that of `refine`.
+            root.build();
+            let refine = root.find_subcommand_mut("refine").expect("it was just parsed");
+            let text = "the argument '--adapter <NAME>' cannot be used with '--backend cpu'";
+            refine.error(ErrorKind::ArgumentConflict, text).exit();
+        }
+        cli
+    }
+}
+
+impl RefineArgs {
+    /// The backend, with what `--adapter` implies.
+    pub(crate) fn backend(&self) -> BackendChoice {
+        if self.adapter.is_some() { BackendChoice::Gpu } else { self.backend }
+    }
+
+    /// The parameters; each was checked when it was parsed.
+    pub(crate) fn params(&self) -> RefineParams {
+        let neighborhood = match self.neighborhood {
+            NeighborhoodChoice::Accurate => Neighborhood::Accurate,
+            NeighborhoodChoice::Fuzzy => Neighborhood::Fuzzy,
+        };
+        let &Self { levels, simplified, theta_f, theta_c, lambda1, lambda2, .. } = self;
+        RefineParams { levels, neighborhood, simplified, theta_f, theta_c, lambda1, lambda2 }
+    }
+}
+
+fn shape() -> impl TypedValueParser<Value = Shape> {
+    let names = PossibleValuesParser::new(Shape::ALL.map(Shape::name));
+    names.try_map(|name| name.parse::<Shape>())
+}
+
+fn levels(text: &str) -> Result<u32, String> {
+    let levels = text.parse().map_err(|_| "it must be a whole number from 0 to 20")?;
+    let params = RefineParams { levels, ..RefineParams::default() };
+    params.validate().map_err(|e| e.to_string())?;
+    Ok(levels)
+}
+
+/// An angle in degrees, to radians.
+fn theta_f(text: &str) -> Result<f32, String> {
+    let theta_f = number(text)?.to_radians();
+    let params = RefineParams { theta_f, ..RefineParams::default() };
+    params.validate().map_err(|_| "it must be above 0 and at most 90 degrees")?;
+    Ok(theta_f)
+}
+
+/// An angle in degrees, to radians.
+fn theta_c(text: &str) -> Result<f32, String> {
+    let theta_c = number(text)?.to_radians();
+    let params = RefineParams { theta_c, ..RefineParams::default() };
+    params.validate().map_err(|_| "it must be above 0 and below 180 degrees")?;
+    Ok(theta_c)
+}
+
+fn lambda1(text: &str) -> Result<f32, String> {
+    let lambda1 = number(text)?;
+    let params = RefineParams { lambda1, ..RefineParams::default() };
+    params.validate().map_err(|_| "it must be above 0 and at most 1")?;
+    Ok(lambda1)
+}
+
+fn lambda2(text: &str) -> Result<f32, String> {
+    let lambda2 = number(text)?;
+    let params = RefineParams { lambda2, ..RefineParams::default() };
+    params.validate().map_err(|_| "it must be 0 to 1")?;
+    Ok(lambda2)
+}
+
+fn number(text: &str) -> Result<f32, String> {
+    text.parse().map_err(|_| "it must be a number like 0.5".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn definition_is_sound() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn defaults_are_those_of_the_library() {
+        let cli = Cli::parse_from(["surfine", "refine", "in.ply", "-o", "out.ply"]);
+        let Command::Refine(args) = cli.command else { panic!("another command was parsed") };
+        assert_eq!(args.params(), RefineParams { levels: 2, ..RefineParams::default() });
+    }
+}

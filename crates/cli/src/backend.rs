@@ -1,0 +1,119 @@
+//! Where the refinement is computed.
+
+use crate::Failure;
+use crate::adapters::is_software;
+use crate::args::{BackendChoice, RefineArgs};
+use crate::watch::Watch;
+use std::time::{Duration, Instant};
+use surfine::{Error, Gpu, Mode, PointSet, RefineParams, Refined, Refiner, choose_adapter, wgpu};
+use surfine_reference::insertion::Order;
+
+/// A refined cloud and how it came about.
+pub(crate) struct Computed {
+    pub(crate) refined: Refined,
+    pub(crate) backend: Backend,
+    /// Choosing an adapter, opening it and building the kernels.
+    pub(crate) setup: Duration,
+    /// The refinement, with the way of the points to the device and back.
+    pub(crate) refine: Duration,
+    /// Why the CPU was taken although a GPU might have been.
+    pub(crate) fallback: Option<String>,
+}
+
+/// What a refinement was computed with.
+pub(crate) enum Backend {
+    Gpu {
+        adapter: String,
+        mode: Mode,
+        /// The most device memory that was in use at the start of a stage, if the driver tells.
+        bytes: Option<u64>,
+    },
+    Cpu {
+        threads: usize,
+    },
+}
+
+/// Gives the CPU backend its threads; without a wish, those of `RAYON_NUM_THREADS` or one a core.
+pub(crate) fn start_threads(wanted: Option<u16>) -> Result<(), Failure> {
+    let builder = rayon::ThreadPoolBuilder::new().num_threads(wanted.unwrap_or(0).into());
+    let failed = |e| Failure(format!("threads cannot be started: {e}: ask for fewer (--threads)"));
+    builder.build_global().map_err(failed)
+}
+
+/// Refines with the backend that the arguments ask for.
+pub(crate) fn compute(
+    args: &RefineArgs,
+    points: &PointSet,
+    watch: &Watch,
+) -> Result<Computed, Failure> {
+    let params = args.params();
+    let begin = Instant::now();
+    let mut computed = match args.backend() {
+        BackendChoice::Cpu => on_cpu(points, &params, watch)?,
+        BackendChoice::Gpu => {
+            let adapter = choose_adapter(args.adapter.as_deref())?;
+            on_gpu(&adapter, points, &params, watch)?
+        }
+        BackendChoice::Auto => on_either(points, &params, watch)?,
+    };
+    computed.setup = begin.elapsed().saturating_sub(computed.refine);
+    Ok(computed)
+}
+
+/// A hardware GPU if there is one that can do it, else the CPU.
+fn on_either(points: &PointSet, params: &RefineParams, watch: &Watch) -> Result<Computed, Failure> {
+    let reason = match choose_adapter(None) {
+        Err(error) => error.to_string(),
+        Ok(adapter) if is_software(&adapter.get_info()) => {
+            let name = adapter.get_info().name;
+            format!("the GPU adapter {name} is a software one, which is slower")
+        }
+        Ok(adapter) => match on_gpu(&adapter, points, params, watch) {
+            Ok(computed) => return Ok(computed),
+            // The CPU would refuse them too.
+            Err(error @ (Error::Points(_) | Error::Params(_))) => return Err(error.into()),
+            Err(error) => format!("the GPU failed: {error}"),
+        },
+    };
+    let fallback = format!("using the CPU: {reason}");
+    watch.warn(&fallback);
+    Ok(Computed { fallback: Some(fallback), ..on_cpu(points, params, watch)? })
+}
+
+fn on_cpu(points: &PointSet, params: &RefineParams, watch: &Watch) -> Result<Computed, Failure> {
+    let begin = Instant::now();
+    let refined =
+        surfine_reference::refine_with(points, params, Order::Together, &mut |at| watch.at(at))?;
+    let backend = Backend::Cpu { threads: rayon::current_num_threads() };
+    Ok(Computed {
+        refined,
+        backend,
+        setup: Duration::ZERO,
+        refine: begin.elapsed(),
+        fallback: None,
+    })
+}
+
+fn on_gpu(
+    adapter: &wgpu::Adapter,
+    points: &PointSet,
+    params: &RefineParams,
+    watch: &Watch,
+) -> Result<Computed, Error> {
+    let mut refiner = Refiner::with_gpu(Gpu::open(adapter)?)?;
+    let Gpu { device, mode, name: adapter, .. } = refiner.gpu().clone();
+    let begin = Instant::now();
+    let mut bytes = None;
+    let refined = refiner.refine_with(points, params, &mut |at| {
+        bytes = bytes.max(device.generate_allocator_report().map(|r| r.total_allocated_bytes));
+        watch.at(at);
+    })?;
+    let backend = Backend::Gpu { adapter, mode, bytes };
+    Ok(Computed {
+        refined,
+        backend,
+        setup: Duration::ZERO,
+        refine: begin.elapsed(),
+        fallback: None,
+    })
+}

@@ -1,0 +1,46 @@
+//! Output files, checked before the long computation.
+
+use crate::Failure;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::Path;
+use surfine_points::ply::{Encoding, PlyError};
+
+pub(crate) fn encoding(ascii: bool) -> Encoding {
+    if ascii { Encoding::Ascii } else { Encoding::Binary }
+}
+
+/// Refuses an output that [`surfine_points::ply::write`] would refuse at the end.
+pub(crate) fn check_output(output: &Path) -> Result<(), Failure> {
+    let failed = |cause| PlyError::Write { path: output.into(), cause };
+    // A link stays; the file behind it is written.
+    let target = fs::canonicalize(output).unwrap_or_else(|_| output.into());
+    if names_folder(&target) {
+        return Err(PlyError::NotAFile { path: output.into() }.into());
+    }
+    if let Ok(metadata) = fs::metadata(&target) {
+        if !metadata.is_file() {
+            return Err(PlyError::NotAFile { path: output.into() }.into());
+        }
+        if metadata.permissions().readonly() {
+            return Err(failed(ErrorKind::PermissionDenied.into()).into());
+        }
+    }
+    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.unwrap_or(Path::new("."));
+    if !folder.is_dir() {
+        let (output, folder) = (output.display(), folder.display());
+        return Err(Failure(format!(
+            "{output}: cannot be written: {folder} is no folder: make it"
+        )));
+    }
+    // Permissions say too little: try. This file has no name, so that nothing can stay behind.
+    tempfile::tempfile_in(folder).map_err(failed)?;
+    Ok(())
+}
+
+/// Whether the path can't name a file: it is empty, or ends with `..` or a slash.
+fn names_folder(path: &Path) -> bool {
+    let slash = path.to_string_lossy().ends_with(std::path::is_separator);
+    slash || path.file_name().is_none()
+}

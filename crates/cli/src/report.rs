@@ -1,0 +1,258 @@
+//! The summary of a refinement, for people and as JSON.
+
+use crate::args::RefineArgs;
+use crate::backend::{Backend, Computed};
+use serde::{Serialize, Serializer};
+use std::fmt::{self, Display, Formatter};
+use std::path::Path;
+use std::time::Duration;
+use surfine::{LevelReport, Mode, Neighborhood, PointSet, RefineParams};
+use surfine_points::ply::Source;
+
+/// How long the steps took.
+pub(crate) struct Times {
+    pub(crate) read: Duration,
+    pub(crate) setup: Duration,
+    pub(crate) refine: Duration,
+    pub(crate) write: Duration,
+}
+
+/// The summary. Its names are the keys of the JSON object.
+#[derive(Serialize)]
+pub(crate) struct Report {
+    input: String,
+    output: String,
+    points_in: usize,
+    points_out: usize,
+    /// `gpu` or `cpu`.
+    backend: &'static str,
+    /// Name of the GPU adapter.
+    adapter: Option<String>,
+    /// `exact` or `plain`; the CPU defines what is exact.
+    mode: &'static str,
+    /// Threads of the CPU backend.
+    threads: Option<usize>,
+    /// The most device memory that was in use at the start of a stage, if the driver tells.
+    device_bytes: Option<u64>,
+    params: Params,
+    levels: Vec<Level>,
+    seconds: Seconds,
+    /// New points for each second of refinement, without setup and files.
+    points_per_second: f64,
+    notes: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Params {
+    levels: u32,
+    /// The one that was used: `accurate` or `fuzzy`.
+    neighborhood: &'static str,
+    simplified: bool,
+    theta_f_degrees: f64,
+    theta_c_degrees: f64,
+    lambda1: f32,
+    lambda2: f32,
+}
+
+#[derive(Serialize)]
+struct Level {
+    points_in: usize,
+    points_out: usize,
+    growth: f64,
+    /// Mean size of `N^E`.
+    ball_neighbors_mean: f64,
+    /// Mean size of `N`.
+    ring_neighbors_mean: f64,
+    classes: usize,
+    isolated: usize,
+    /// In the order of the stages.
+    #[serde(serialize_with = "in_order")]
+    stages_ms: Vec<(&'static str, f64)>,
+}
+
+#[derive(Serialize)]
+struct Seconds {
+    read: f64,
+    setup: f64,
+    refine: f64,
+    write: f64,
+}
+
+impl Report {
+    pub(crate) fn new(
+        args: &RefineArgs,
+        points: &PointSet,
+        source: &Source,
+        computed: &Computed,
+        times: Times,
+    ) -> Self {
+        let refined = &computed.refined;
+        let (adapter, mode, threads, device_bytes) = match &computed.backend {
+            Backend::Gpu { adapter, mode, bytes } => (Some(adapter.clone()), *mode, None, *bytes),
+            Backend::Cpu { threads } => (None, Mode::Exact, Some(*threads), None),
+        };
+        Self {
+            input: name(&args.input),
+            output: name(&args.output),
+            points_in: points.len(),
+            points_out: refined.points.len(),
+            backend: if adapter.is_some() { "gpu" } else { "cpu" },
+            adapter,
+            mode: mode.name(),
+            threads,
+            device_bytes,
+            params: Params::new(&args.params()),
+            levels: refined.reports.iter().map(Level::new).collect(),
+            points_per_second: per_second(refined.parents.len(), times.refine),
+            seconds: Seconds::new(&times),
+            notes: notes(points, source, computed, mode),
+        }
+    }
+}
+
+fn name(path: &Path) -> String {
+    path.display().to_string()
+}
+
+fn per_second(count: usize, time: Duration) -> f64 {
+    // A refinement of nothing may take no time that the clock shows.
+    count as f64 / time.as_secs_f64().max(1e-9)
+}
+
+impl Params {
+    fn new(params: &RefineParams) -> Self {
+        // The fourth decimal is the last that 32-bit radians keep.
+        let degrees = |angle: f32| (f64::from(angle).to_degrees() * 1e4).round() / 1e4;
+        Self {
+            levels: params.levels,
+            neighborhood: match params.effective_neighborhood() {
+                Neighborhood::Accurate => "accurate",
+                Neighborhood::Fuzzy => "fuzzy",
+            },
+            simplified: params.simplified,
+            theta_f_degrees: degrees(params.theta_f),
+            theta_c_degrees: degrees(params.theta_c),
+            lambda1: params.lambda1,
+            lambda2: params.lambda2,
+        }
+    }
+}
+
+impl Level {
+    fn new(report: &LevelReport) -> Self {
+        let mean = |sum: u64| sum as f64 / report.points_in.max(1) as f64;
+        let in_ms = |&(stage, time): &(_, Duration)| (stage, 1e3 * time.as_secs_f64());
+        Self {
+            points_in: report.points_in,
+            points_out: report.points_out,
+            growth: report.growth(),
+            ball_neighbors_mean: mean(report.ball_neighbors),
+            ring_neighbors_mean: mean(report.ring_neighbors),
+            classes: report.classes,
+            isolated: report.isolated,
+            stages_ms: report.stages.iter().map(in_ms).collect(),
+        }
+    }
+
+    fn ms(&self) -> f64 {
+        self.stages_ms.iter().map(|(_, ms)| ms).sum()
+    }
+}
+
+impl Seconds {
+    fn new(times: &Times) -> Self {
+        let &Times { read, setup, refine, write } = times;
+        let [read, setup, refine, write] = [read, setup, refine, write].map(|t| t.as_secs_f64());
+        Self { read, setup, refine, write }
+    }
+
+    fn total(&self) -> f64 {
+        self.read + self.setup + self.refine + self.write
+    }
+}
+
+/// Everything that was treated in a special way, with how many points it concerns.
+fn notes(points: &PointSet, source: &Source, computed: &Computed, mode: Mode) -> Vec<String> {
+    let mut notes: Vec<String> = computed.fallback.iter().cloned().collect();
+    notes.extend(source.notes.iter().cloned());
+    match points.non_unit_normals() {
+        0 => {}
+        count => notes.push(format!(
+            "{} not of unit length: normalized for the refinement, written as in the input",
+            counted(count, "normal is", "normals are")
+        )),
+    }
+    for (level, report) in (1..).zip(&computed.refined.reports) {
+        if report.isolated > 0 {
+            let isolated = counted(report.isolated, "point has", "points have");
+            notes.push(format!("level {level}: {isolated} no neighbor, so none new around them"));
+        }
+    }
+    if mode == Mode::Plain {
+        notes.push("mode plain: results can differ from the CPU backend's in rounding".into());
+    }
+    notes
+}
+
+fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
+}
+
+/// A JSON object that keeps the order of its keys.
+fn in_order<S: Serializer>(
+    entries: &[(&'static str, f64)],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(entries.iter().copied())
+}
+
+impl Display for Report {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        writeln!(f, "input    {}: {} points", self.input, self.points_in)?;
+        writeln!(f, "output   {}: {} points", self.output, self.points_out)?;
+        match (&self.adapter, self.threads) {
+            (Some(adapter), _) => writeln!(f, "backend  gpu, {adapter}, mode {}", self.mode)?,
+            (None, threads) => writeln!(f, "backend  cpu, threads: {}", threads.unwrap_or(1))?,
+        }
+        for (number, level) in (1..).zip(&self.levels) {
+            write!(f, "level {number}  {level}")?;
+        }
+        write!(f, "{}", self.seconds)?;
+        let new = self.points_out - self.points_in;
+        writeln!(
+            f,
+            "speed    {new} new points, {:.0} a second of refinement",
+            self.points_per_second
+        )?;
+        if let Some(bytes) = self.device_bytes {
+            writeln!(f, "memory   {:.1} MB on the device", bytes as f64 / 1e6)?;
+        }
+        self.notes.iter().try_for_each(|note| writeln!(f, "note     {note}"))
+    }
+}
+
+impl Display for Level {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Self { points_in, points_out, growth, classes, isolated, .. } = self;
+        let (ball, ring) = (self.ball_neighbors_mean, self.ring_neighbors_mean);
+        writeln!(f, "{points_in} -> {points_out} points (x {growth:.3}) in {:.1} ms", self.ms())?;
+        writeln!(
+            f,
+            "         mean |N^E| {ball:.2}, mean |N| {ring:.2}, classes {classes}, isolated {isolated}"
+        )?;
+        let stages: Vec<String> =
+            self.stages_ms.iter().map(|(stage, ms)| format!("{stage} {ms:.1}")).collect();
+        writeln!(f, "         ms: {}", stages.join(", "))
+    }
+}
+
+impl Display for Seconds {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Self { read, setup, refine, write } = self;
+        writeln!(
+            f,
+            "time     {:.3} s: read {read:.3}, set up {setup:.3}, refine {refine:.3}, write {write:.3}",
+            self.total()
+        )
+    }
+}

@@ -1,0 +1,638 @@
+//! The program as its users run it: files in, files out, exit codes and messages.
+
+use serde_json::Value;
+use std::fs;
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+use surfine_points::ply;
+use surfine_points::{PointSet, Values, Vec3};
+use tempfile::TempDir;
+
+const CORE: &str = "property float x\nproperty float y\nproperty float z\nproperty float nx\n\
+    property float ny\nproperty float nz\nproperty float radius\n";
+
+/// The lines of a triangle.
+const TINY: [&str; 3] = ["0 0 0 0 0 1 2\n", "1 0 0 0 0 1 2\n", "0 1 0 0 0 1 2\n"];
+
+/// A folder in which the program runs, for the files of one test.
+struct Folder(TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    /// A folder with a cloud `in.ply`.
+    fn with_sample(shape: &str, points: &str) -> Self {
+        let folder = Self::new();
+        folder.succeed(&["sample", shape, "-n", points, "-o", "in.ply"]);
+        folder
+    }
+
+    /// A folder with these bytes as `in.ply`.
+    fn with_input(bytes: impl AsRef<[u8]>) -> Self {
+        let folder = Self::new();
+        fs::write(folder.path("in.ply"), bytes).unwrap();
+        folder
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn bytes(&self, name: &str) -> Vec<u8> {
+        fs::read(self.path(name)).unwrap()
+    }
+
+    fn points(&self, name: &str) -> PointSet {
+        ply::read(&self.path(name)).unwrap().0
+    }
+
+    fn names(&self) -> Vec<String> {
+        let entries = fs::read_dir(self.0.path()).unwrap();
+        let mut names: Vec<String> =
+            entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    fn command(&self, args: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_surfine"));
+        command.args(args).current_dir(self.0.path());
+        // The tests say themselves what they need.
+        for name in ["WGPU_ADAPTER_NAME", "WGPU_BACKEND", "RAYON_NUM_THREADS"] {
+            command.env_remove(name);
+        }
+        command
+    }
+
+    fn run(&self, args: &[&str]) -> Output {
+        self.command(args).output().unwrap()
+    }
+
+    /// Runs without complaint and returns what was printed.
+    fn succeed(&self, args: &[&str]) -> String {
+        let output = self.run(args);
+        let complaint = text(&output.stderr);
+        assert!(output.status.success(), "{args:?}: {complaint}");
+        assert_eq!(complaint, "", "{args:?}");
+        text(&output.stdout)
+    }
+
+    /// Refines `in.ply` to `out.ply` on the CPU.
+    fn refine(&self, more: &[&str]) -> String {
+        self.refine_to("out.ply", more)
+    }
+
+    fn refine_to(&self, output: &str, more: &[&str]) -> String {
+        let usual = ["refine", "in.ply", "-o", output, "--backend", "cpu"];
+        self.succeed(&[&usual, more].concat())
+    }
+
+    fn refine_json(&self, more: &[&str]) -> Value {
+        serde_json::from_str(&self.refine(&[more, &["--json"]].concat())).unwrap()
+    }
+
+    /// Expects a failure that is told in one line with this in it, and that changes no file.
+    fn fail(&self, args: &[&str], part: &str) {
+        let before = self.names();
+        let output = self.run(args);
+        let complaint = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{args:?}: {complaint}");
+        assert!(complaint.starts_with("surfine: error: "), "{args:?}: {complaint}");
+        assert_eq!(complaint.matches('\n').count(), 1, "{args:?}: {complaint}");
+        assert!(complaint.contains(part), "{args:?}: no `{part}` in: {complaint}");
+        assert_eq!(text(&output.stdout), "", "{args:?}");
+        assert_eq!(self.names(), before, "{args:?}");
+    }
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+/// An ASCII file of points with the usual properties.
+fn ascii(count: usize, rows: &str) -> String {
+    format!("ply\nformat ascii 1.0\nelement vertex {count}\n{CORE}end_header\n{rows}")
+}
+
+/// A file of three points of which the second has this line.
+fn with_line(line: &str) -> String {
+    ascii(3, &format!("0 0 0 0 0 1 2\n{line}\n0 1 0 0 0 1 2\n"))
+}
+
+/// A binary file of one point with the usual properties and more.
+fn binary(more: &str, row: &[f32]) -> Vec<u8> {
+    let format = "ply\nformat binary_little_endian 1.0\nelement vertex 1\n";
+    let mut bytes = format!("{format}{CORE}{more}end_header\n").into_bytes();
+    bytes.extend(row.iter().flat_map(|v| v.to_le_bytes()));
+    bytes
+}
+
+#[test]
+fn sampled_cloud_is_refined() {
+    let folder = Folder::with_sample("sphere", "500");
+    let summary = folder.refine(&[]);
+    let (input, output) = (folder.points("in.ply"), folder.points("out.ply"));
+    assert_eq!(input.len(), 500);
+    assert!((8 * 500..10 * 500).contains(&output.len()), "{} points", output.len());
+    assert!(output.positions.iter().all(|x| (x.length() - 1.0).abs() < 0.01));
+    assert_eq!(folder.names(), ["in.ply", "out.ply"]);
+    let count = format!("out.ply: {} points", output.len());
+    for part in ["in.ply: 500 points", &count, "cpu", "level 2", "neighborhood", "a second"] {
+        assert!(summary.contains(part), "no `{part}` in:\n{summary}");
+    }
+}
+
+#[test]
+fn input_points_come_first_and_unchanged() {
+    let folder = Folder::with_sample("torus", "300");
+    folder.refine(&[]);
+    let (input, output) = (folder.points("in.ply"), folder.points("out.ply"));
+    assert_eq!(output.positions[..300], input.positions);
+    assert_eq!(output.normals[..300], input.normals);
+}
+
+#[test]
+fn every_run_gives_the_same_bytes() {
+    let folder = Folder::with_sample("torus", "400");
+    folder.refine(&[]);
+    let expected = folder.bytes("out.ply");
+    folder.refine_to("again.ply", &[]);
+    assert!(folder.bytes("again.ply") == expected, "a second run differs");
+    for threads in ["1", "2"] {
+        let args = ["refine", "in.ply", "-o", "threads.ply", "--backend", "cpu", "--json"];
+        let output =
+            folder.command(&args).env("RAYON_NUM_THREADS", threads).output().unwrap().stdout;
+        let report: Value = serde_json::from_slice(&output).unwrap();
+        assert_eq!(report["threads"].to_string(), threads);
+        assert!(folder.bytes("threads.ply") == expected, "{threads} threads differ");
+    }
+    let report = folder.refine_json(&["--threads", "3"]);
+    assert_eq!(report["threads"], 3);
+    assert!(folder.bytes("out.ply") == expected, "3 threads differ");
+}
+
+#[test]
+fn samples_depend_on_their_arguments_alone() {
+    let folder = Folder::new();
+    let sample = |more: &[&str]| {
+        folder.succeed(&[&["sample", "saddle", "-n", "200", "-o", "s.ply"], more].concat());
+        folder.bytes("s.ply")
+    };
+    let first = sample(&[]);
+    assert!(first == sample(&["--seed", "0"]));
+    assert!(first != sample(&["--seed", "1"]));
+    assert!(first != sample(&["--random"]));
+    let decimal = sample(&["--ascii"]);
+    assert!(decimal.starts_with(b"ply\nformat ascii 1.0\n"));
+    let points = folder.points("s.ply");
+    sample(&[]);
+    assert_eq!(folder.points("s.ply"), points);
+    for shape in ["sphere", "torus", "ellipsoid", "saddle", "plane"] {
+        let summary = folder.succeed(&["sample", shape, "-n", "50", "-o", "s.ply"]);
+        assert!(summary.contains("50 points") && summary.contains(shape), "{summary}");
+        assert_eq!(folder.points("s.ply").len(), 50);
+    }
+}
+
+#[test]
+fn json_adds_up() {
+    let folder = Folder::with_sample("ellipsoid", "400");
+    let report = folder.refine_json(&["--levels", "3", "--theta-f", "45"]);
+    let count = |value: &Value| value.as_u64().unwrap();
+    assert_eq!(report["input"], "in.ply");
+    assert_eq!(report["output"], "out.ply");
+    assert_eq!(report["backend"], "cpu");
+    assert_eq!(report["adapter"], Value::Null);
+    assert_eq!(report["mode"], "exact");
+    assert_eq!(report["params"]["levels"], 3);
+    assert_eq!(report["params"]["neighborhood"], "accurate");
+    assert_eq!(report["params"]["theta_f_degrees"], 45.0);
+    assert_eq!(report["params"]["theta_c_degrees"], 89.0);
+    assert_eq!(report["points_in"], 400);
+    assert_eq!(count(&report["points_out"]) as usize, folder.points("out.ply").len());
+    assert_eq!(report["notes"], Value::Array(Vec::new()));
+
+    let levels = report["levels"].as_array().unwrap();
+    assert_eq!(levels.len(), 3);
+    let mut points = 400;
+    let mut ms = 0.0;
+    for level in levels {
+        assert_eq!(count(&level["points_in"]), points);
+        let growth = count(&level["points_out"]) as f64 / points as f64;
+        assert!((level["growth"].as_f64().unwrap() - growth).abs() < 1e-12);
+        let mean = |name: &str| level[name].as_f64().unwrap();
+        assert!(mean("ball_neighbors_mean") >= mean("ring_neighbors_mean"));
+        assert!((5.0..7.0).contains(&mean("ring_neighbors_mean")));
+        assert!(count(&level["classes"]) > 0);
+        assert_eq!(level["isolated"], 0);
+        let stages = level["stages_ms"].as_object().unwrap();
+        assert_eq!(stages.len(), 7);
+        ms += stages.values().map(|t| t.as_f64().unwrap()).sum::<f64>();
+        points = count(&level["points_out"]);
+    }
+    assert_eq!(count(&report["points_out"]), points);
+    let seconds = |step: &str| report["seconds"][step].as_f64().unwrap();
+    assert!(seconds("refine") * 1e3 >= ms, "stages took longer than the whole");
+    assert!(seconds("read") > 0.0 && seconds("setup") >= 0.0 && seconds("write") > 0.0);
+    let speed = (points - 400) as f64 / seconds("refine");
+    assert!((report["points_per_second"].as_f64().unwrap() / speed - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn options_reach_the_refinement() {
+    let folder = Folder::with_sample("torus", "300");
+    folder.refine(&[]);
+    let usual = folder.bytes("out.ply");
+    let options: [&[&str]; 7] = [
+        &["--levels", "1"],
+        &["--neighborhood", "fuzzy"],
+        &["--simplified"],
+        &["--theta-f", "80"],
+        &["--theta-c", "60"],
+        &["--lambda1", "0.3"],
+        &["--lambda2", "0.9"],
+    ];
+    for more in options {
+        folder.refine(more);
+        assert!(folder.bytes("out.ply") != usual, "{more:?} changes nothing");
+    }
+    let report = folder.refine_json(&["--simplified"]);
+    assert_eq!(report["params"]["neighborhood"], "fuzzy");
+    assert_eq!(report["params"]["simplified"], true);
+}
+
+#[test]
+fn decimal_output_holds_the_same_points() {
+    let folder = Folder::with_sample("sphere", "100");
+    folder.refine(&[]);
+    folder.refine_to("decimal.ply", &["--ascii"]);
+    assert!(folder.bytes("decimal.ply").starts_with(b"ply\nformat ascii 1.0\n"));
+    assert_eq!(folder.points("decimal.ply"), folder.points("out.ply"));
+}
+
+#[test]
+fn provenance_is_written() {
+    let folder = Folder::with_sample("sphere", "100");
+    folder.refine(&["--provenance"]);
+    let points = folder.points("out.ply");
+    let values = |name: &str| &points.attribute(name).unwrap().values;
+    let Values::U8(levels) = values("level") else { panic!("no bytes") };
+    assert_eq!(levels[..100], [0; 100]);
+    assert!(levels.is_sorted() && levels.ends_with(&[2]));
+    for name in ["parent0", "parent1", "parent2"] {
+        let Values::I32(parents) = values(name) else { panic!("no integers") };
+        assert_eq!(parents[..100], [-1; 100]);
+        assert!((100..).zip(&parents[100..]).all(|(i, &parent)| (0..i).contains(&parent)));
+    }
+}
+
+#[test]
+fn quiet_says_nothing() {
+    let folder = Folder::with_sample("sphere", "100");
+    assert_eq!(folder.refine(&["--quiet"]), "");
+}
+
+#[test]
+fn special_points_are_reported() {
+    let rows = "0 0 0 0 0 2 2\n1 0 0 0 0 1 2\n0 1 0 0 0 1 2\n90 0 0 0 0 3 2\n";
+    let vertices = ascii(4, rows);
+    let face = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    let bytes = vertices.replace("end_header\n", face) + "3 0 1 2\n";
+    let folder = Folder::with_input(bytes);
+    let report = folder.refine_json(&["--levels", "1"]);
+    let notes: Vec<&str> =
+        report["notes"].as_array().unwrap().iter().map(|n| n.as_str().unwrap()).collect();
+    let parts = ["`face` element", "2 normals are not of unit length", "level 1: 1 point has no"];
+    assert_eq!(notes.len(), parts.len(), "{notes:?}");
+    for (note, part) in notes.iter().zip(parts) {
+        assert!(note.contains(part), "no `{part}` in: {note}");
+    }
+    assert_eq!(report["levels"][0]["isolated"], 1);
+    let summary = folder.refine(&["--levels", "1"]);
+    assert!(notes.iter().all(|note| summary.contains(note)), "{summary}");
+}
+
+#[test]
+fn zero_levels_copy() {
+    let folder = Folder::with_sample("sphere", "100");
+    let report = folder.refine_json(&["--levels", "0"]);
+    assert!(folder.bytes("out.ply") == folder.bytes("in.ply"));
+    assert_eq!(report["levels"], Value::Array(Vec::new()));
+    assert_eq!(report["points_per_second"], 0.0);
+}
+
+#[test]
+fn tiny_clouds_work() {
+    for count in 0..=3 {
+        let folder = Folder::with_input(ascii(count, &TINY[..count].concat()));
+        let report = folder.refine_json(&[]);
+        let output = folder.points("out.ply");
+        assert_eq!(report["points_in"], count);
+        assert_eq!(report["points_out"], output.len());
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::Y];
+        assert_eq!(output.positions[..count], corners[..count]);
+        let sample = folder.succeed(&["sample", "torus", "-n", &count.to_string(), "-o", "s.ply"]);
+        assert!(sample.contains(&format!("{count} points")), "{sample}");
+        assert_eq!(folder.points("s.ply").len(), count);
+    }
+}
+
+#[test]
+fn bad_files_are_refused() {
+    let good = ascii(1, "0 0 0 0 0 1 2\n");
+    let without = |name: &str| {
+        let line = format!("property float {name}\n");
+        assert!(good.contains(&line));
+        good.replace(&line, "")
+    };
+    let cases = [
+        (String::new(), "header line 1: the file is empty"),
+        ("solid\n".into(), "header line 1: the file does not begin with a line `ply`"),
+        (
+            "ply\nformat ascii 1.0\nelement vertex 1\n".into(),
+            "header line 4: the file ends before `end_header`",
+        ),
+        (ascii(3, "0 0 0 0 0 1 2\n"), "element `vertex`: the header promises 3 entries"),
+        (without("nz"), "element `vertex` has no `nz`: add normals"),
+        (without("radius"), "element `vertex` has no `radius`: add a property `radius`"),
+        (without("x"), "element `vertex` has no `x`: add the coordinates"),
+        (with_line("nan 0 0 0 0 1 2"), "vertex 1: line 13: property `x`: `nan`"),
+        (with_line("1 0 0 0 0 0 2"), "vertex 1: the normal has length 0"),
+        (with_line("1 0 0 0 0 1 0"), "vertex 1: the radius is 0"),
+        (with_line("1 0 0 0 0 1 -2"), "vertex 1: the radius is -2"),
+        (with_line("1 0 0 0 0 1 inf"), "vertex 1: line 13: property `radius`: `inf`"),
+        (with_line("1.000 0 0 0 0 1"), "vertex 1: line 13: the line has 6 values for 7 properties"),
+        (with_line("1 0 0 0 0 1 two"), "vertex 1: line 13: property `radius`: `two`"),
+    ];
+    for (bytes, part) in cases {
+        let folder = Folder::with_input(bytes);
+        folder.fail(&["refine", "in.ply", "-o", "out.ply"], &format!("in.ply: {part}"));
+    }
+}
+
+#[test]
+fn bad_values_are_refused() {
+    let (nan, inf) = (f32::NAN, f32::INFINITY);
+    let cases = [
+        ([nan, 0.0, 0.0, 0.0, 0.0, 1.0, 2.0], "a coordinate is not finite (NaN)"),
+        ([0.0, -inf, 0.0, 0.0, 0.0, 1.0, 2.0], "a coordinate is not finite (-inf)"),
+        ([1e20, 0.0, 0.0, 0.0, 0.0, 1.0, 2.0], "coordinate 1e20 is beyond"),
+        ([0.0, 0.0, 0.0, 0.0, 0.0, nan, 2.0], "a normal component is not finite (NaN)"),
+        ([0.0, 0.0, 0.0, 0.0, 0.0, -0.0, 2.0], "the normal has length 0"),
+        ([0.0, 0.0, 0.0, 0.0, 0.0, 1.0, nan], "the radius is not finite (NaN)"),
+        ([0.0, 0.0, 0.0, 0.0, 0.0, 1.0, inf], "the radius is not finite (inf)"),
+        ([0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0], "the radius is 0"),
+        ([0.0, 0.0, 0.0, 0.0, 0.0, 1.0, -1.0], "the radius is -1"),
+    ];
+    for (row, part) in cases {
+        let folder = Folder::with_input(binary("", &row));
+        folder.fail(&["refine", "in.ply", "-o", "out.ply"], &format!("in.ply: vertex 0: {part}"));
+    }
+}
+
+#[test]
+fn cut_binary_file_is_refused() {
+    let folder = Folder::with_sample("sphere", "50");
+    let bytes = folder.bytes("in.ply");
+    fs::write(folder.path("in.ply"), &bytes[..bytes.len() - 5]).unwrap();
+    let part = "in.ply: element `vertex`: the header promises 50 entries, the file ends after 49";
+    folder.fail(&["refine", "in.ply", "-o", "out.ply"], part);
+}
+
+#[test]
+fn bad_inputs_are_refused() {
+    let folder = Folder::new();
+    folder.fail(&["refine", "in.ply", "-o", "out.ply"], "in.ply: cannot be read: ");
+    fs::create_dir(folder.path("folder")).unwrap();
+    folder.fail(&["refine", "folder", "-o", "out.ply"], "folder: is not a regular file");
+    folder.fail(&["refine", "two\nlines", "-o", "out.ply"], "two lines: cannot be read: ");
+}
+
+#[test]
+fn bad_outputs_are_refused_before_reading() {
+    // If this was read, the message would be about it.
+    let folder = Folder::with_input("no PLY file");
+    fs::create_dir(folder.path("folder")).unwrap();
+    let cases = [
+        ("no/out.ply", "no/out.ply: cannot be written: no is no folder"),
+        ("in.ply/out.ply", "in.ply/out.ply: cannot be written: in.ply is no folder"),
+        ("folder", "folder: is not a regular file: name a file"),
+        ("new/", "new/: is not a regular file: name a file"),
+    ];
+    for (output, part) in cases {
+        folder.fail(&["refine", "in.ply", "-o", output], part);
+        folder.fail(&["sample", "sphere", "-n", "9", "-o", output], part);
+    }
+    fs::write(folder.path("kept.ply"), "kept").unwrap();
+    let mut permissions = fs::metadata(folder.path("kept.ply")).unwrap().permissions();
+    permissions.set_readonly(true);
+    fs::set_permissions(folder.path("kept.ply"), permissions).unwrap();
+    folder.fail(&["refine", "in.ply", "-o", "kept.ply"], "kept.ply: cannot be written: ");
+    assert_eq!(folder.bytes("kept.ply"), b"kept");
+}
+
+/// Not even a superuser can write there.
+#[cfg(target_os = "linux")]
+#[test]
+fn unwritable_folder_is_refused_before_reading() {
+    let folder = Folder::with_input("no PLY file");
+    let part = "/proc/out.ply: cannot be written: ";
+    folder.fail(&["refine", "in.ply", "-o", "/proc/out.ply"], part);
+}
+
+#[test]
+fn output_must_not_be_the_input() {
+    let folder = Folder::with_input("no PLY file");
+    let mut outputs = vec!["in.ply", "./in.ply"];
+    fs::hard_link(folder.path("in.ply"), folder.path("hard.ply")).unwrap();
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("in.ply", folder.path("soft.ply")).unwrap();
+        outputs.extend(["hard.ply", "soft.ply"]);
+    }
+    for output in outputs {
+        let part = format!("{output}: is the input too");
+        folder.fail(&["refine", "in.ply", "-o", output], &part);
+    }
+    assert_eq!(folder.bytes("in.ply"), b"no PLY file");
+}
+
+#[test]
+fn attributes_that_cannot_be_written_are_refused() {
+    let bytes = |name: &str, value: f32| {
+        let row = [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 2.0, value];
+        binary(&format!("property float {name}\n"), &row)
+    };
+    let refine = ["refine", "in.ply", "-o", "out.ply"];
+    let folder = Folder::with_input(bytes("parent1", 5.0));
+    let part = "in.ply: property `parent1` cannot be written: the name is taken";
+    folder.fail(&[&refine[..], &["--provenance"]].concat(), part);
+    folder.refine(&[]);
+    let folder = Folder::with_input(bytes("curvature", f32::NAN));
+    let part = "in.ply: property `curvature` cannot be written: vertex 0 has no finite value";
+    folder.fail(&[&refine[..], &["--ascii"]].concat(), part);
+    folder.refine(&[]);
+}
+
+#[test]
+fn failure_keeps_an_earlier_output() {
+    let folder = Folder::with_input("no PLY file");
+    fs::write(folder.path("out.ply"), "earlier").unwrap();
+    folder.fail(&["refine", "in.ply", "-o", "out.ply"], "in.ply: ");
+    assert_eq!(folder.bytes("out.ply"), b"earlier");
+}
+
+#[test]
+fn wrong_usage_exits_with_2() {
+    let folder = Folder::with_sample("sphere", "20");
+    let refine = ["refine", "in.ply", "-o", "out.ply"];
+    let wrong: [&[&str]; 22] = [
+        &["--levels", "21"],
+        &["--levels", "-1"],
+        &["--levels", "two"],
+        &["--backend", "tpu"],
+        &["--backend", "cpu", "--adapter", "x"],
+        &["--neighborhood", "k"],
+        &["--theta-f", "0"],
+        &["--theta-f", "90.1"],
+        &["--theta-f", "nan"],
+        &["--theta-c", "180"],
+        &["--theta-c", "-3"],
+        &["--lambda1", "0"],
+        &["--lambda1", "1.1"],
+        &["--lambda2", "-0.1"],
+        &["--lambda2", "1.5"],
+        &["--lambda2", "inf"],
+        &["--lambda2", "half"],
+        &["--threads", "0"],
+        &["--threads", "x"],
+        &["--provenance=1"],
+        &["--no-such-option"],
+        &["more.ply"],
+    ];
+    let mut commands: Vec<Vec<&str>> = wrong.map(|more| [&refine, more].concat()).to_vec();
+    let sample = ["sample", "sphere", "-n"];
+    commands.extend([
+        vec![],
+        vec!["paint"],
+        vec!["refine", "in.ply"],
+        vec!["refine", "-o", "out.ply"],
+        vec!["sample", "cube", "-n", "9", "-o", "out.ply"],
+        [&sample[..], &["-1", "-o", "out.ply"]].concat(),
+        [&sample[..], &["1000000000", "-o", "out.ply"]].concat(),
+        vec!["sample", "sphere", "-o", "out.ply"],
+        vec!["adapters", "x"],
+    ]);
+    for args in commands {
+        let output = folder.run(&args);
+        assert_eq!(output.status.code(), Some(2), "{args:?}: {}", text(&output.stderr));
+        assert!(!output.stderr.is_empty() && output.stdout.is_empty(), "{args:?}");
+        assert_eq!(folder.names(), ["in.ply"], "{args:?}");
+    }
+}
+
+#[test]
+fn help_has_examples() {
+    let folder = Folder::new();
+    let version = folder.succeed(&["--version"]);
+    assert_eq!(version, concat!("surfine ", env!("CARGO_PKG_VERSION"), "\n"));
+    for command in [&["--help"][..], &["help", "refine"], &["adapters", "-h"], &["sample", "-h"]] {
+        let help = folder.succeed(command);
+        let examples = help.split("Examples:\n").nth(1).expect("there are examples");
+        assert!(examples.matches("surfine").count() >= 3, "{help}");
+    }
+}
+
+#[test]
+fn reader_that_leaves_is_no_failure() {
+    let folder = Folder::with_sample("sphere", "300");
+    let args = ["refine", "in.ply", "-o", "out.ply", "--backend", "cpu", "--json"];
+    let mut command = folder.command(&args);
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(text(&output.stderr), "");
+    assert!(output.status.success());
+    assert!(folder.path("out.ply").exists());
+}
+
+/// `auto` takes the CPU unless there is a hardware GPU, and says so.
+#[test]
+fn auto_says_why_it_takes_the_cpu() {
+    let folder = Folder::with_sample("sphere", "100");
+    let output = folder.run(&["refine", "in.ply", "-o", "out.ply", "--json"]);
+    let (complaint, report) = (text(&output.stderr), text(&output.stdout));
+    assert!(output.status.success(), "{complaint}");
+    let report: Value = serde_json::from_str(&report).unwrap();
+    if report["backend"] == "gpu" {
+        assert_eq!(complaint, "");
+    } else {
+        let reason = complaint.strip_prefix("surfine: ").unwrap().strip_suffix('\n').unwrap();
+        assert!(reason.starts_with("using the CPU: ") && !reason.contains('\n'), "{complaint}");
+        assert_eq!(report["notes"][0], reason);
+    }
+}
+
+/// A backend that the engine has no code for stands for a machine without a driver.
+#[test]
+fn missing_driver_is_named() {
+    let folder = Folder::with_sample("sphere", "100");
+    let run = |args: &[&str]| {
+        let output = folder.command(args).env("WGPU_BACKEND", "noop").output().unwrap();
+        (output.status.code(), text(&output.stdout), text(&output.stderr))
+    };
+    let refine = ["refine", "in.ply", "-o", "out.ply", "--quiet", "--backend"];
+    for args in [&["adapters"][..], &["adapters", "--json"], &[&refine[..], &["gpu"]].concat()] {
+        let (code, out, complaint) = run(args);
+        assert_eq!((code, out.as_str()), (Some(1), ""), "{args:?}: {complaint}");
+        assert!(complaint.starts_with("surfine: error: no GPU adapter found: "), "{complaint}");
+        assert!(complaint.contains("mesa-vulkan-drivers"), "{complaint}");
+        assert_eq!(complaint.matches('\n').count(), 1, "{complaint}");
+        assert_eq!(folder.names(), ["in.ply"]);
+    }
+    let (code, _, complaint) = run(&[&refine[..], &["auto"]].concat());
+    assert_eq!(code, Some(0), "{complaint}");
+    assert!(complaint.starts_with("surfine: using the CPU: no GPU adapter found"), "{complaint}");
+    assert_eq!(folder.names(), ["in.ply", "out.ply"]);
+}
+
+/// Needs an adapter; a software one will do.
+#[test]
+fn gpu_gives_the_bytes_of_the_cpu() {
+    let folder = Folder::with_sample("torus", "500");
+    let list = folder.run(&["adapters", "--json"]);
+    assert!(
+        list.status.success(),
+        "this test needs a Vulkan adapter: install the Debian package mesa-vulkan-drivers ({})",
+        text(&list.stderr)
+    );
+    let list: Value = serde_json::from_slice(&list.stdout).unwrap();
+    let entries = list["adapters"].as_array().unwrap();
+    let chosen: Vec<&Value> = entries.iter().filter(|e| e["chosen"] == true).collect();
+    assert_eq!(chosen.len(), 1, "{list}");
+    let table = folder.succeed(&["adapters"]);
+    assert!(table.contains(&format!("* {}", chosen[0]["name"].as_str().unwrap())), "{table}");
+
+    folder.refine(&["--provenance"]);
+    let refine = ["refine", "in.ply", "-o", "gpu.ply", "--provenance", "--json"];
+    let report = folder.succeed(&[&refine[..], &["--backend", "gpu"]].concat());
+    let report: Value = serde_json::from_str(&report).unwrap();
+    assert_eq!(report["backend"], "gpu");
+    assert_eq!(report["adapter"], chosen[0]["name"]);
+    assert_eq!(report["mode"], chosen[0]["mode"]);
+    assert_eq!(report["mode"], "exact", "bytes are equal in exact mode only");
+    assert!(folder.bytes("gpu.ply") == folder.bytes("out.ply"), "GPU and CPU differ");
+
+    let part = "no GPU adapter is named like \"no such thing\"; there are: ";
+    fs::remove_file(folder.path("gpu.ply")).unwrap();
+    folder.fail(&[&refine[..], &["--adapter", "no such thing"]].concat(), part);
+
+    for count in 0..=3 {
+        fs::write(folder.path("in.ply"), ascii(count, &TINY[..count].concat())).unwrap();
+        folder.refine(&["--provenance"]);
+        folder.succeed(&[&refine[..], &["--backend", "gpu"]].concat());
+        assert!(folder.bytes("gpu.ply") == folder.bytes("out.ply"), "{count} points differ");
+    }
+}

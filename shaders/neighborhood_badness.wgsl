@@ -1,0 +1,73 @@
+// neighborhood: removes the members of N^E that lie behind others (eq. 8).
+// Twin: `badness` in crates/reference/src/neighborhood.rs
+// One invocation per arena entry: the entries of a point are compared with each other, which is too much for one.
+
+@group(0) @binding(2) var<storage, read> points: array<Point>;
+@group(0) @binding(3) var<storage, read> blocks: array<vec2<u32>>;
+/// As in neighborhood_ball; the last word becomes NONE for removed members.
+@group(0) @binding(4) var<storage, read_write> arena: array<vec4<u32>>;
+@group(0) @binding(5) var<storage, read_write> counters: Counters;
+
+/// The accurate neighbourhood N^g, or else the fuzzy one N^f.
+override accurate: bool = true;
+
+@compute @workgroup_size(64)
+fn neighborhood_badness(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let i = linear_index(id, groups);
+    if i >= min(atomicLoad(&counters.arena), params.arena_words) / 4u {
+        return;
+    }
+    let p = arena[i].w;
+    // Removal is simultaneous: only the last word changes, and nobody else reads it.
+    if p < params.points && badness(p, i) > 1.0 + 1e-3 {
+        arena[i].w = NONE;
+    }
+    note_cut_loops(p);
+}
+
+/// The vector whose fuzzy plane is tested: q' - p for the accurate neighbourhood, p_i - p for the fuzzy one.
+fn plane_vector(center: Point, i: u32) -> vec3<f32> {
+    if accurate {
+        return vec3(bitcast<f32>(arena[i].y), bitcast<f32>(arena[i].z), 0.0);
+    }
+    return (points[arena[i].x].position - center.position) * (1.0 / center.radius);
+}
+
+/// Badness w_i (eq. 8): how far member i lies behind its successors and predecessors.
+/// The maximum is taken over signed squares of sin α_ij, which order the same and need no root per pair.
+fn badness(p: u32, i: u32) -> f32 {
+    let center = points[p];
+    let block = blocks[p];
+    let own = plane_vector(center, i);
+    let x = bitcast<f32>(arena[i].y);
+    let y = bitcast<f32>(arena[i].z);
+    var successor = -2.0;
+    var predecessor = -2.0;
+    for (var j = block.x; j < block.x + block.y; j++) {
+        let other = plane_vector(center, j);
+        let c = own - other;
+        let product = dot3(other, other) * dot3(c, c);
+        if i == j || product == 0.0 {
+            continue;
+        }
+        let along = dot3(other, c);
+        let sin_squared = along * abs(along) / product;
+        // An exactly collinear point counts as successor.
+        if x * bitcast<f32>(arena[j].z) - y * bitcast<f32>(arena[j].y) >= 0.0 {
+            successor = max(successor, sin_squared);
+        } else {
+            predecessor = max(predecessor, sin_squared);
+        }
+    }
+    return plane_badness(successor) + plane_badness(predecessor);
+}
+
+/// w_ij from the signed square of sin α_ij; 0 for an empty set, which passes -2.
+fn plane_badness(sin_squared: f32) -> f32 {
+    let root = sqrt(abs(sin_squared));
+    let sine = select(root, -root, sin_squared < 0.0);
+    if sine < -params.sin_theta_f {
+        return 0.0;
+    }
+    return 0.5 * (sine / params.sin_theta_f + 1.0);
+}

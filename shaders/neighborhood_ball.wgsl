@@ -1,0 +1,98 @@
+// neighborhood: the Euclidean neighbourhood N^E of each point without the pairs that eq. 6 rejects (sections 3 and 4).
+// Twin: `consistent_ball` in crates/reference/src/neighborhood.rs
+// One invocation per point. dispatch: first point, number of points.
+//
+// A point takes as many arena entries as N^E has members. If the arena is too small, nothing is written and the
+// counters tell the host what to provide.
+
+@group(0) @binding(2) var<storage, read> points: array<Point>;
+@group(0) @binding(3) var<storage, read> grid: array<u32>;
+/// Members of N^E: index, bits of x and y on the tangent plane, and the point whose neighbourhood it is.
+@group(0) @binding(4) var<storage, read_write> arena: array<vec4<u32>>;
+/// First arena entry and number of members of each point.
+@group(0) @binding(5) var<storage, read_write> blocks: array<vec2<u32>>;
+@group(0) @binding(6) var<storage, read_write> counters: Counters;
+
+/// The accurate neighbourhood N^g, or else the fuzzy one N^f.
+override accurate: bool = true;
+
+@compute @workgroup_size(64)
+fn neighborhood_ball(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let index = linear_index(id, groups);
+    if index >= dispatch.y {
+        return;
+    }
+    let p = dispatch.x + index;
+    let size = ball_size(p);
+    let first = atomicAdd(&counters.arena, 4u * size) / 4u;
+    atomicMax(&counters.arena_peak, 4u * (first + size));
+    count_ball(size);
+    blocks[p] = vec2(first, 0u);
+    if 4u * (first + size) > params.arena_words {
+        return;
+    }
+    let members = consistent_ball(p, first);
+    blocks[p] = vec2(first, members);
+    for (var i = first + members; i < first + size; i++) {
+        arena[i].w = NONE;
+    }
+    note_cut_loops(p);
+}
+
+fn count_ball(size: u32) {
+    atomicMax(&counters.largest_ball, size);
+    let before = atomicAdd(&counters.ball_low, size);
+    if before + size < before {
+        atomicAdd(&counters.ball_high, 1u);
+    }
+}
+
+/// Whether q is in N^E (eq. 7): within the radius and not at the same place.
+fn in_ball(center: Point, p: u32, q: u32) -> bool {
+    let d = points[q].position - center.position;
+    let d2 = dot3(d, d);
+    return q != p && d2 <= center.radius * center.radius && d2 != 0.0;
+}
+
+fn ball_size(p: u32) -> u32 {
+    let center = points[p];
+    var size = 0u;
+    var walk = ball_walk(center.position, center.radius);
+    for (var q = next_entry(&walk); q != NONE; q = next_entry(&walk)) {
+        size += u32(in_ball(center, p, q));
+    }
+    return size;
+}
+
+/// Writes N^E without the pairs that eq. 6 rejects, and returns how many are left.
+fn consistent_ball(p: u32, first: u32) -> u32 {
+    let center = points[p];
+    let frame = tangent_frame(center.normal);
+    let inverse = 1.0 / center.radius;
+    var members = 0u;
+    var walk = ball_walk(center.position, center.radius);
+    for (var q = next_entry(&walk); q != NONE; q = next_entry(&walk)) {
+        if !in_ball(center, p, q) {
+            continue;
+        }
+        let normal = points[q].normal;
+        let d = points[q].position - center.position;
+        let d2 = dot3(d, d);
+        let u = d * (1.0 / sqrt(d2));
+        let consistent = abs(dot3(center.normal + normal, u)) <= 1.0 + dot3(center.normal, normal);
+        let x = dot3(d, frame.e1);
+        let y = dot3(d, frame.e2);
+        let q2 = x * x + y * y;
+        if !consistent || q2 <= 1e-12 * d2 {
+            continue;
+        }
+        var scale = inverse;
+        if accurate {
+            // The geodesic projection q' (eq. 9).
+            scale = (geodesic_distance(d, center.normal, normal) * inverse) / sqrt(q2);
+        }
+        arena[first + members] = vec4(q, bitcast<u32>(x * scale), bitcast<u32>(y * scale), p);
+        members += 1u;
+    }
+    return members;
+}
