@@ -22,15 +22,8 @@ pub(crate) struct Computed {
 
 /// What a refinement was computed with.
 pub(crate) enum Backend {
-    Gpu {
-        adapter: String,
-        mode: Mode,
-        /// The most device memory that was in use at the start of a stage, if the driver tells.
-        bytes: Option<u64>,
-    },
-    Cpu {
-        threads: usize,
-    },
+    Gpu { adapter: String, mode: Mode },
+    Cpu { threads: usize },
 }
 
 /// Gives the CPU backend its threads; without a wish, those of `RAYON_NUM_THREADS` or one a core.
@@ -101,14 +94,10 @@ fn on_gpu(
     watch: &Watch,
 ) -> Result<Computed, Error> {
     let mut refiner = Refiner::with_gpu(Gpu::open(adapter)?)?;
-    let Gpu { device, mode, name: adapter, .. } = refiner.gpu().clone();
+    let Gpu { mode, name: adapter, .. } = refiner.gpu().clone();
     let begin = Instant::now();
-    let mut bytes = None;
-    let refined = refiner.refine_with(points, params, &mut |at| {
-        bytes = bytes.max(device.generate_allocator_report().map(|r| r.total_allocated_bytes));
-        watch.at(at);
-    })?;
-    let backend = Backend::Gpu { adapter, mode, bytes };
+    let refined = refiner.refine_with(points, params, &mut |at| watch.at(at))?;
+    let backend = Backend::Gpu { adapter, mode };
     Ok(Computed {
         refined,
         backend,

@@ -87,9 +87,9 @@ impl Report {
         times: Times,
     ) -> Self {
         let refined = &computed.refined;
-        let (adapter, mode, threads, device_bytes) = match &computed.backend {
-            Backend::Gpu { adapter, mode, bytes } => (Some(adapter.clone()), *mode, None, *bytes),
-            Backend::Cpu { threads } => (None, Mode::Exact, Some(*threads), None),
+        let (adapter, mode, threads) = match &computed.backend {
+            Backend::Gpu { adapter, mode } => (Some(adapter.clone()), *mode, None),
+            Backend::Cpu { threads } => (None, Mode::Exact, Some(*threads)),
         };
         Self {
             input: name(&args.input),
@@ -100,7 +100,7 @@ impl Report {
             adapter,
             mode: mode.name(),
             threads,
-            device_bytes,
+            device_bytes: refined.device_bytes,
             params: Params::new(&args.params()),
             levels: refined.reports.iter().map(Level::new).collect(),
             points_per_second: per_second(refined.parents.len(), times.refine),

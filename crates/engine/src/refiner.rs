@@ -242,8 +242,9 @@ impl Refiner {
         refined.positions.extend(new.iter().map(|p| Vec3::from_array(p.position)));
         refined.normals.extend(new.iter().map(|p| Vec3::from_array(p.normal)));
         refined.extend_attributes(&parents);
-        let GpuRefined { level_sizes, reports, .. } = result;
-        Ok(Refined { points: refined, parents, level_sizes, reports })
+        let GpuRefined { level_sizes, reports, device_bytes, .. } = result;
+        let device_bytes = Some(device_bytes);
+        Ok(Refined { points: refined, parents, level_sizes, reports, device_bytes })
     }
 }
 

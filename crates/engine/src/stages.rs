@@ -169,7 +169,7 @@ impl Step<'_> {
     /// `neighborhood`: the rings. Returns the counters.
     pub(crate) fn neighborhood(&mut self) -> Result<Counters, Error> {
         let n = self.params.points;
-        let mut chunk = n.min(CHUNK);
+        let mut chunk = n.clamp(1, CHUNK);
         self.buffers.blocks.reserve(self.gpu, 2 * WORD * u64::from(n))?;
         self.buffers.ring_starts.reserve(self.gpu, WORD * (u64::from(n) + 1))?;
         self.buffers.ring_entries.reserve(self.gpu, 2 * WORD * 7 * u64::from(n))?;
@@ -351,7 +351,7 @@ impl Step<'_> {
         self.buffers.new_indices.reserve(self.gpu, WORD * (slots + 1))?;
         self.scan.reserve(self.gpu, self.params.slots + 1)?;
         // The largest part of a class that is refined at once.
-        let mut part = self.params.points;
+        let mut part = self.params.points.max(1);
         loop {
             self.params.arena_words = words_of(&self.buffers.arena);
             self.record_insertion(starts, part)?;
