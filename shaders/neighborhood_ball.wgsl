@@ -40,7 +40,6 @@ fn neighborhood_ball(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_
 }
 
 fn count_ball(size: u32) {
-    atomicMax(&counters.largest_ball, size);
     let before = atomicAdd(&counters.ball_low, size);
     if before + size < before {
         atomicAdd(&counters.ball_high, 1u);

@@ -50,8 +50,6 @@ struct Counters {
     classes: atomic<u32>,
     /// Points without a ring.
     isolated: atomic<u32>,
-    /// Largest size of a Euclidean neighbourhood.
-    largest_ball: atomic<u32>,
     /// Sum of the sizes of all Euclidean neighbourhoods, low word.
     ball_low: atomic<u32>,
     /// The same, high word.

@@ -40,14 +40,18 @@ pub enum Error {
         /// Name of the adapter.
         adapter: String,
     },
-    /// One point alone has more neighbours than the device can hold.
+    /// A point has more neighbours than the driver can walk through.
     #[error(
-        "a point has {neighbors} neighbours within its radius, more than {adapter} can hold: \
-         lower the radii to about 1.25 times the distance to the farthest natural neighbour, or use the CPU"
+        "vertex {point} has {neighbors} neighbours within its radius at level {level}, more than {adapter} can walk \
+         through: lower the radii to about 1.25 times the distance to the farthest natural neighbour, or use the CPU"
     )]
     Crowded {
-        /// Size of the largest Euclidean neighbourhood.
+        /// Index of the point with the most neighbours.
+        point: usize,
+        /// How many it has.
         neighbors: u32,
+        /// The refinement step that failed, from 1.
+        level: u32,
         /// Name of the adapter.
         adapter: String,
     },

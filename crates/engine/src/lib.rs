@@ -47,10 +47,10 @@ pub mod testing {
     /// The device was lost.
     pub fn read<T: bytemuck::Pod>(
         gpu: &crate::Gpu,
-        buffer: &Buffer,
+        buffer: &wgpu::Buffer,
         count: usize,
     ) -> Result<Vec<T>, crate::Error> {
-        let bytes = crate::buffers::read(gpu, buffer.raw(), (count * size_of::<T>()) as u64)?;
+        let bytes = crate::buffers::read(gpu, buffer, (count * size_of::<T>()) as u64)?;
         Ok(bytemuck::pod_collect_to_vec(&bytes))
     }
 }

@@ -76,7 +76,6 @@ pub struct Counters {
     pub uncolored: u32,
     pub classes: u32,
     pub isolated: u32,
-    pub largest_ball: u32,
     pub ball_low: u32,
     pub ball_high: u32,
     pub cut_loops: u32,

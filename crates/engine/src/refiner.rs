@@ -185,7 +185,7 @@ impl Refiner {
     ) -> Result<LevelReport, Error> {
         let Self { gpu, kernels, uniforms, buffers, scan } = self;
         let (_, kernels) = kernels.iter().find(|(v, _)| *v == variant).expect("it was prepared");
-        let mut step = Step { gpu, kernels, uniforms, buffers, scan, params, largest_ball: 0 };
+        let mut step = Step { gpu, kernels, uniforms, buffers, scan, params };
         clock.start("grid");
         match grid {
             Some(grid) => step.upload_grid(grid)?,

@@ -96,8 +96,6 @@ pub(crate) struct Step<'a> {
     pub(crate) buffers: &'a mut Buffers,
     pub(crate) scan: &'a mut Scan,
     pub(crate) params: Params,
-    /// Size of the largest Euclidean neighbourhood of the step.
-    pub(crate) largest_ball: u32,
 }
 
 impl Step<'_> {
@@ -120,14 +118,26 @@ impl Step<'_> {
         let (counters, words) = bytes.split_at(size as usize);
         let counters: Counters = bytemuck::pod_read_unaligned(counters);
         if counters.cut_loops > 0 {
-            return Err(self.crowded(&counters));
+            return Err(self.crowded());
         }
         Ok((counters, bytemuck::pod_collect_to_vec(words)))
     }
 
-    fn crowded(&self, counters: &Counters) -> Error {
-        let neighbors = counters.largest_ball.max(self.largest_ball);
-        Error::Crowded { neighbors, adapter: self.gpu.name.clone() }
+    /// The error that names the point with the most neighbours.
+    fn crowded(&self) -> Error {
+        let n = self.params.points as usize;
+        let blocks = match read_parts(self.gpu, &[(self.buffers.blocks.raw(), 0, 8 * n as u64)]) {
+            Ok(bytes) => bytemuck::pod_collect_to_vec::<u8, [u32; 2]>(&bytes),
+            Err(e) => return e,
+        };
+        let most = (0..n).max_by_key(|&p| (blocks[p][1], std::cmp::Reverse(p)));
+        let (point, neighbors) = most.map_or((0, 0), |p| (p, blocks[p][1]));
+        Error::Crowded {
+            point,
+            neighbors,
+            level: self.params.level,
+            adapter: self.gpu.name.clone(),
+        }
     }
 
     fn cells(&self) -> u32 {
@@ -183,7 +193,6 @@ impl Step<'_> {
             let enough = self.make_room_in_arena(&counters, &mut chunk)?;
             if enough && totals[0] <= self.params.ring_entries {
                 self.params.slots = totals[0];
-                self.largest_ball = counters.largest_ball;
                 return Ok(counters);
             }
             self.buffers.ring_entries.reserve(self.gpu, 2 * WORD * u64::from(totals[0]))?;
@@ -229,7 +238,7 @@ impl Step<'_> {
         } else if *chunk > 1 {
             *chunk = chunk.div_ceil(2);
         } else {
-            return Err(self.crowded(counters));
+            return Err(self.crowded());
         }
         Ok(false)
     }

@@ -5,11 +5,8 @@
 
 use glam::Vec3;
 
-/// 2π, π and π/2 in f32.
-pub const TAU: f32 = 6.283_185_5;
-/// π in f32.
-pub const PI: f32 = 3.141_592_7;
-const HALF_PI: f32 = 1.570_796_4;
+use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
+pub use std::f32::consts::{PI, TAU};
 
 /// `v` with length 1; the zero vector must be kept away by the caller.
 pub fn unit(v: Vec3) -> Vec3 {
@@ -39,7 +36,7 @@ fn atan_unit(t: f32) -> f32 {
     let z = x * x;
     let p = ((0.080_537_446 * z - 0.138_776_85) * z + 0.199_777_11) * z - 0.333_329_5;
     let a = p * z * x + x;
-    if upper { a + 0.785_398_2 } else { a }
+    if upper { a + FRAC_PI_4 } else { a }
 }
 
 /// Angle of the direction (x, y) in [0, 2π], counter-clockwise from the x axis; 0 for the zero vector.
@@ -52,7 +49,7 @@ pub fn direction_angle(y: f32, x: f32) -> f32 {
     }
     let mut a = atan_unit(ax.min(ay) / longer);
     if ay > ax {
-        a = HALF_PI - a;
+        a = FRAC_PI_2 - a;
     }
     if x < 0.0 {
         a = PI - a;

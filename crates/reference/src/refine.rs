@@ -71,7 +71,7 @@ pub fn refine_with(
     for step in 1..=params.levels {
         let points = level.len();
         let (state, mut report) = run_level(&level, params, order, &mut |stage| {
-            progress(Progress { level: step, levels: params.levels, stage, points })
+            progress(Progress { level: step, levels: params.levels, stage, points });
         });
         let begin = Instant::now();
         let parents = commit(&mut level, &state.rings, &state.candidates, &state.insertion, params);

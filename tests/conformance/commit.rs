@@ -1,0 +1,73 @@
+//! The commit kernels on the reference's decisions.
+
+use crate::harness::{compare, compare_equal, device, must, steps};
+use crate::tolerance::{NORMAL, POSITION};
+use surfine::records::Point;
+use surfine_reference::commit::commit;
+
+#[test]
+fn the_next_level_is_that_of_the_reference() {
+    let mut device = device();
+    for step in steps() {
+        let (n, slots) = (step.level.len(), step.state.rings.len());
+        let insertion = &step.state.insertion;
+        let mut expected = step.level.clone();
+        let state = &step.state;
+        let parents =
+            commit(&mut expected, &state.rings, &state.candidates, insertion, &step.refine);
+
+        // A state from 1 on is one more than the class that inserted the slot.
+        let of_slot = |s: usize| match (insertion.inserted[s], state.candidates.exists(s)) {
+            (true, _) => 1,
+            (false, true) => u32::MAX - 1,
+            (false, false) => u32::MAX,
+        };
+        let states = device.buffer("states", &(0..slots).map(of_slot).collect::<Vec<u32>>());
+        let indices = device.output::<u32>("indices", slots + 1);
+        device.run(step.run("commit_count", [0; 4], slots), &[&states, &indices]);
+        let mut summed: Vec<u32> = device.read(&indices, slots + 1);
+        for i in 1..=slots {
+            summed[i] += summed[i - 1];
+        }
+        assert_eq!(summed[slots] as usize, parents.len(), "{}", step.name);
+
+        let mut records = step.points();
+        records.resize(expected.len(), Point::default());
+        let guarded = [bytemuck::cast_slice(&records), &[0xa5u8; 64][..]].concat();
+        let points = device.buffer("points", &guarded);
+        let ring_starts = device.buffer("ring starts", &state.rings.starts);
+        let ring_entries = device.buffer("ring entries", &step.ring_entries());
+        let positions = device.buffer("positions", &step.candidate_positions());
+        let normals = device.buffer("normals", &step.candidate_normals());
+        let owners = device.buffer("owners", &state.candidates.owners);
+        let indices = device.buffer("indices", &summed);
+        let radii: Vec<f32> = [insertion.radii.as_slice(), &insertion.slot_radii].concat();
+        let radii = device.buffer("radii", &radii);
+        let found_parents = device.output::<[u32; 3]>("parents", parents.len());
+        let rings = [&points, &ring_starts, &ring_entries];
+        let candidates = [&positions, &normals, &owners];
+        let outputs = [&indices, &radii, &found_parents];
+        let buffers = [&rings[..], &candidates, &outputs].concat();
+        device.run(step.run("commit", [0; 4], n.max(slots)), &buffers);
+
+        let what = |column| format!("{}: {column}", step.name);
+        let found: Vec<Point> = device.read(&points, expected.len());
+        must(compare_equal(
+            &what("parents"),
+            &parents,
+            &device.read::<[u32; 3]>(&found_parents, parents.len()),
+        ));
+        let scale = expected.radii.iter().copied().fold(0.0, f32::max);
+        let positions: Vec<f32> = found.iter().flat_map(|p| p.position).collect();
+        let normals: Vec<f32> = found.iter().flat_map(|p| p.normal).collect();
+        let radii: Vec<f32> = found.iter().map(|p| p.radius).collect();
+        let flat = |v: &[surfine::Vec3]| v.iter().flat_map(|v| v.to_array()).collect::<Vec<f32>>();
+        let (position, normal) = (device.allows(POSITION), device.allows(NORMAL));
+        must(compare(&what("positions"), &flat(&expected.positions), &positions, position, scale));
+        must(compare(&what("normals"), &flat(&expected.normals), &normals, normal, 1.0));
+        must(compare(&what("radii"), &expected.radii, &radii, crate::tolerance::EXACT, 1.0));
+        let levels: Vec<u32> = found.iter().map(|p| p.level).collect();
+        let expected: Vec<u32> = (0..found.len()).map(|i| u32::from(i >= n)).collect();
+        must(compare_equal(&what("levels"), &expected, &levels));
+    }
+}

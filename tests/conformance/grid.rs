@@ -1,0 +1,85 @@
+//! The kernels that sort points and candidates by cell, and the prefix sum that they share with other stages.
+
+use crate::harness::{Device, Step, compare_equal, device, grid_words, must, steps};
+use surfine::testing::Buffer;
+use surfine_points::Grid;
+
+/// Entries of a cell come in the order of timing: sort them before they are compared.
+fn sorted_cells(grid: &Grid, words: &[u32]) -> Vec<u32> {
+    let (starts, items) = words.split_at(grid.starts.len());
+    let mut items = items.to_vec();
+    for pair in starts.windows(2) {
+        items[pair[0] as usize..pair[1] as usize].sort_unstable();
+    }
+    [starts, &items].concat()
+}
+
+/// Counts, sums and fills as the engine does, with the prefix sum taken on the host.
+fn check(
+    device: &mut Device,
+    step: &Step,
+    kernel: &str,
+    input: &Buffer,
+    count: usize,
+    expected: &Grid,
+) {
+    let cells = expected.shape.cells();
+    let words = cells + 1 + expected.items.len();
+    let (grid, ranks) =
+        (device.output::<u32>("grid", words), device.output::<[u32; 2]>("ranks", count));
+    device.run(step.run(kernel, [0; 4], count), &[input, &grid, &ranks]);
+    let mut counted: Vec<u32> = device.read(&grid, words);
+    for i in 1..=cells {
+        counted[i] += counted[i - 1];
+    }
+    must(compare_equal(&format!("{}: starts", step.name), &expected.starts, &counted[..=cells]));
+    let summed = [bytemuck::cast_slice(&counted), &[0xa5u8; 64][..]].concat();
+    let grid = device.buffer("summed", &summed);
+    device.run(step.run("sort_fill", [count as u32, cells as u32, 0, 0], count), &[&ranks, &grid]);
+    let filled: Vec<u32> = device.read(&grid, words);
+    let found = sorted_cells(expected, &filled);
+    must(compare_equal(&format!("{}: entries", step.name), &grid_words(expected), &found));
+}
+
+#[test]
+fn points_and_candidates_are_sorted_by_cell() {
+    let mut device = device();
+    for step in steps() {
+        let points = device.buffer("points", &step.points());
+        check(&mut device, &step, "grid_points", &points, step.level.len(), &step.state.grid);
+        let candidates = device.buffer("candidates", &step.candidate_positions());
+        let slots = step.state.rings.len();
+        check(
+            &mut device,
+            &step,
+            "grid_candidates",
+            &candidates,
+            slots,
+            &step.state.candidate_grid,
+        );
+    }
+}
+
+#[test]
+fn prefix_sums_of_three_layers_and_of_a_part() {
+    let mut device = device();
+    let step = steps().remove(0);
+    let mut random = fastrand::Rng::with_seed(3);
+    let values: Vec<u32> = (0..9000).map(|_| random.u32(0..1000)).collect();
+    // Only values 500 to 8999 are summed; 8500 values make 133 blocks, and these make 3.
+    let (first, count, blocks, tops) = (500u32, 8500u32, 133u32, 3u32);
+    let guarded = [bytemuck::cast_slice(&values), &[0xa5u8; 64][..]].concat();
+    let sums = device.buffer("values", &guarded);
+    let (lower, upper) = (device.output::<u32>("lower", 133), device.output::<u32>("upper", 3));
+    device.run(step.run("scan_sum", [first, count, 0, 0], blocks as usize), &[&sums, &lower]);
+    device.run(step.run("scan_sum", [0, blocks, 0, 0], tops as usize), &[&lower, &upper]);
+    let nothing = device.output::<u32>("nothing", 1);
+    device.run(step.run("scan_add", [0, tops, 0, 0], 1), &[&upper, &nothing]);
+    device.run(step.run("scan_add", [0, blocks, 0, 0], tops as usize), &[&lower, &upper]);
+    device.run(step.run("scan_add", [first, count, 0, 0], blocks as usize), &[&sums, &lower]);
+    let mut expected = values;
+    for i in 501..9000 {
+        expected[i] += expected[i - 1];
+    }
+    must(compare_equal("sums", &expected, &device.read::<u32>(&sums, 9000)));
+}

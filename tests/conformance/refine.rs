@@ -1,0 +1,166 @@
+//! Whole runs of several levels: the engine's cloud against the reference's.
+
+use crate::clouds::{Cloud, variants, whole};
+use crate::harness::{Device, compare, compare_equal, device, must};
+use crate::tolerance::{EXACT, FLIPPED_DECISIONS, POSITION};
+use std::collections::HashMap;
+use surfine::records::Point;
+use surfine::testing::read;
+use surfine::{PointSet, RefineParams, Refined, Vec3};
+
+fn flat(vectors: &[Vec3]) -> Vec<f32> {
+    vectors.iter().flat_map(|v| v.to_array()).collect()
+}
+
+/// Everything must be equal, bit for bit.
+fn must_be_identical(name: &str, expected: &Refined, found: &Refined) {
+    let what = |column: &str| format!("{name}: {column}");
+    must(compare_equal(&what("level sizes"), &expected.level_sizes, &found.level_sizes));
+    must(compare_equal(&what("parents"), &expected.parents, &found.parents));
+    let (e, f) = (&expected.points, &found.points);
+    must(compare(&what("positions"), &flat(&e.positions), &flat(&f.positions), EXACT, 1.0));
+    must(compare(&what("normals"), &flat(&e.normals), &flat(&f.normals), EXACT, 1.0));
+    must(compare(&what("radii"), &e.radii, &f.radii, EXACT, 1.0));
+    must(compare_equal(&what("levels"), &expected.levels(), &found.levels()));
+    for (e, f) in expected.reports.iter().zip(&found.reports) {
+        assert_eq!(
+            (e.points_in, e.points_out, e.ball_neighbors, e.ring_neighbors, e.classes, e.isolated),
+            (f.points_in, f.points_out, f.ball_neighbors, f.ring_neighbors, f.classes, f.isolated),
+            "{name}: report"
+        );
+    }
+}
+
+/// On adapters that round otherwise: the first level's new points are those of the same triangles, but for a budget of
+/// flipped decisions, and lie where the reference puts them.
+fn must_be_close(name: &str, expected: &Refined, found: &Refined) {
+    let old = expected.level_sizes[0];
+    let (expected_new, found_new) = (expected.level_sizes[1] - old, found.level_sizes[1] - old);
+    let place: HashMap<[u32; 3], usize> =
+        (0..expected_new).map(|i| (expected.parents[i], old + i)).collect();
+    let scale = expected.points.radii[..old].iter().copied().fold(0.0, f32::max);
+    let mut flipped = expected_new.abs_diff(found_new);
+    for i in 0..found_new {
+        let Some(&at) = place.get(&found.parents[i]) else {
+            flipped += 1;
+            continue;
+        };
+        let (e, f) = (expected.points.positions[at], found.points.positions[old + i]);
+        must(compare(&format!("{name}: position"), &e.to_array(), &f.to_array(), POSITION, scale));
+    }
+    let budget = (FLIPPED_DECISIONS * expected_new as f64).ceil() as usize;
+    println!("{name}: {flipped} flipped decisions of {expected_new}, {budget} allowed");
+    assert!(flipped <= budget, "{name}: {flipped} flipped decisions, {budget} allowed");
+}
+
+fn check(device: &mut Device, cloud: &Cloud, params: &RefineParams) {
+    let name = format!("{} {:?} simplified {}", cloud.name, params.neighborhood, params.simplified);
+    let expected = surfine_reference::refine(&cloud.points, params).expect("the cloud is sound");
+    let found = device.refiner.refine(&cloud.points, params).expect("the device can do it");
+    if device.is_exact() {
+        must_be_identical(&name, &expected, &found);
+    } else {
+        must_be_close(&name, &expected, &found);
+    }
+}
+
+#[test]
+fn whole_runs_give_the_bytes_of_the_reference() {
+    let mut device = device();
+    for (cloud, levels) in whole() {
+        for params in variants() {
+            check(&mut device, &cloud, &RefineParams { levels, ..params });
+        }
+    }
+}
+
+#[test]
+fn other_parameters_reach_the_kernels() {
+    let mut device = device();
+    let (cloud, _) = whole().remove(1);
+    let defaults = RefineParams { levels: 2, ..RefineParams::default() };
+    for params in [
+        RefineParams { theta_f: 0.3, ..defaults.clone() },
+        RefineParams { theta_c: 1.2, ..defaults.clone() },
+        RefineParams { lambda1: 0.4, ..defaults.clone() },
+        RefineParams { lambda2: 0.8, ..defaults.clone() },
+        RefineParams { levels: 0, ..defaults },
+    ] {
+        check(&mut device, &cloud, &params);
+    }
+}
+
+#[test]
+fn degenerate_clouds_give_the_bytes_of_the_reference() {
+    let mut device = device();
+    let point = |x: f32| (Vec3::new(x, 0.0, 0.0), Vec3::Z, 1.5f32);
+    let cases: [(&str, Vec<(Vec3, Vec3, f32)>); 6] = [
+        ("empty", vec![]),
+        ("one", vec![point(0.0)]),
+        ("two", vec![point(0.0), point(1.0)]),
+        ("collinear", (0..5).map(|i| point(i as f32)).collect()),
+        ("coincident", vec![point(2.0); 7]),
+        ("triangle", vec![point(0.0), point(1.0), (Vec3::Y, Vec3::Z, 1.5)]),
+    ];
+    for (name, rows) in cases {
+        let points = PointSet::new(
+            rows.iter().map(|r| r.0).collect(),
+            rows.iter().map(|r| r.1).collect(),
+            rows.iter().map(|r| r.2).collect(),
+        );
+        let cloud = Cloud { name: name.into(), points };
+        let params = RefineParams { levels: 2, ..RefineParams::default() };
+        let expected =
+            surfine_reference::refine(&cloud.points, &params).expect("the cloud is sound");
+        let found = device.refiner.refine(&cloud.points, &params).expect("the device can do it");
+        must_be_identical(name, &expected, &found);
+    }
+}
+
+#[test]
+fn buffers_that_turn_out_too_small_grow() {
+    // Far more neighbours a point than buffers are made for, first on a refiner that has seen nothing.
+    let mut device = device();
+    let mut cloud = whole().remove(0).0;
+    cloud.points.radii.iter_mut().for_each(|r| *r *= 2.5);
+    check(&mut device, &cloud, &RefineParams::default());
+}
+
+#[test]
+fn too_many_neighbors_for_the_driver_are_an_error_that_names_a_point() {
+    let mut device = device();
+    let mut cloud = whole().remove(0).0;
+    cloud.points.radii.iter_mut().for_each(|r| *r = 3.0);
+    match device.refiner.refine(&cloud.points, &RefineParams::default()) {
+        Err(surfine::Error::Crowded { neighbors, .. }) => {
+            assert_eq!(neighbors, 999);
+        }
+        // Hardware has no such limit: then the answer must be right.
+        Ok(found) => {
+            let expected = surfine_reference::refine(&cloud.points, &RefineParams::default());
+            assert_eq!(found.level_sizes, expected.expect("the cloud is sound").level_sizes);
+        }
+        Err(other) => panic!("{other}"),
+    }
+}
+
+#[test]
+fn a_result_left_on_the_device_is_the_one_that_is_read_back() {
+    let mut device = device();
+    let (cloud, _) = whole().remove(0);
+    let params = RefineParams { levels: 2, ..RefineParams::default() };
+    let kept =
+        device.refiner.refine_on_device(&cloud.points, &params, &mut |_| ()).expect("it runs");
+    let found = device.refiner.refine(&cloud.points, &params).expect("it runs again");
+    assert_eq!(kept.level_sizes, found.level_sizes);
+    assert!(kept.points.usage().contains(surfine::wgpu::BufferUsages::VERTEX));
+    let records: Vec<Point> =
+        read(device.gpu(), &kept.points, kept.len()).expect("the device is alive");
+    let levels = found.levels();
+    for (i, record) in records.iter().enumerate() {
+        assert_eq!(record.position, found.points.positions[i].to_array(), "position {i}");
+        assert_eq!(record.normal, found.points.normals[i].to_array(), "normal {i}");
+        assert_eq!(record.radius.to_bits(), found.points.radii[i].to_bits(), "radius {i}");
+        assert_eq!(record.level, u32::from(levels[i]), "level {i}");
+    }
+}
