@@ -30,10 +30,12 @@ fn conflicts(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
     let near = params.lambda1 * points[p].radius;
     let own = Own(p, ring_starts[p], ring_starts[p + 1u], near * near, points[p].position);
     let radius = reach_of_conflicts(own, near);
+    // Beyond it no ball reaches, whatever the rounding.
+    let reach_squared = radius * radius * 1.001;
     var size = 0u;
     var walk = ball_walk(own.center, radius);
     for (var y = next_entry(&walk); y != NONE; y = next_entry(&walk)) {
-        size += u32(first_conflicting(own, y));
+        size += u32(first_conflicting(own, y, reach_squared));
     }
     let first = atomicAdd(&counters.conflicts, size);
     conflict_blocks[p] = vec2(first, 0u);
@@ -44,7 +46,7 @@ fn conflicts(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
     var next = first;
     walk = ball_walk(own.center, radius);
     for (var y = next_entry(&walk); y != NONE; y = next_entry(&walk)) {
-        if first_conflicting(own, y) {
+        if first_conflicting(own, y, reach_squared) {
             conflict_entries[next] = owners[y];
             next += 1u;
         }
@@ -66,11 +68,15 @@ fn reach_of_conflicts(own: Own, near: f32) -> f32 {
 }
 
 /// Whether candidate y lies in one of the balls.
-fn conflicting(own: Own, y: u32) -> bool {
+fn conflicting(own: Own, y: u32, reach_squared: f32) -> bool {
     let position = candidate_positions[y].xyz;
     let from_center = position - own.center;
-    if dot3(from_center, from_center) < own.near_squared {
+    let squared = dot3(from_center, from_center);
+    if squared < own.near_squared {
         return true;
+    }
+    if squared > reach_squared {
+        return false;
     }
     for (var x = own.first; x < own.after; x++) {
         let candidate = candidate_positions[x];
@@ -84,13 +90,13 @@ fn conflicting(own: Own, y: u32) -> bool {
 }
 
 /// Whether candidate y conflicts and is the first one of its owner that does: so each point is listed once.
-fn first_conflicting(own: Own, y: u32) -> bool {
+fn first_conflicting(own: Own, y: u32, reach_squared: f32) -> bool {
     let q = owners[y];
-    if q == own.p || !conflicting(own, y) {
+    if q == own.p || !conflicting(own, y, reach_squared) {
         return false;
     }
     for (var earlier = ring_starts[q]; earlier < y; earlier++) {
-        if candidate_positions[earlier].w > 0.0 && conflicting(own, earlier) {
+        if candidate_positions[earlier].w > 0.0 && conflicting(own, earlier, reach_squared) {
             return false;
         }
     }

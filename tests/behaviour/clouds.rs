@@ -25,14 +25,14 @@ pub(crate) fn random(shape: Shape, n: usize, seed: u64) -> PointSet {
     sample(shape, Sampling::Random, n, seed)
 }
 
-/// A model from the folder of shared data beside the checkout, or `None` in a checkout without one.
-pub(crate) fn model(name: &str) -> Option<PointSet> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/points");
+/// A cloud from the shared data beside the checkout, by folder and file, or `None` in a checkout without that folder.
+pub(crate) fn shared(folder: &str, file: &str) -> Option<PointSet> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(folder);
     if !folder.is_dir() {
-        eprintln!("no shared data beside this checkout: {name} is left out");
+        eprintln!("no shared data beside this checkout: {file} is left out");
         return None;
     }
-    let (points, _) = ply::read(&folder.join(name)).expect("a shared model can be read");
+    let (points, _) = ply::read(&folder.join(file)).expect("a shared cloud can be read");
     Some(points)
 }
 

@@ -1,1 +1,155 @@
-//! To come.
+//! The order in which the points of a class are refined cannot be seen in the result, not in a single bit.
+//!
+//! The conflict graph is what makes that true, so it is tried where it is strained: irregular points, ties of lattices,
+//! borders, and radii that reach far beyond the natural neighbours.
+
+use rayon::ThreadPoolBuilder;
+use surfine_points::shapes::{Shape, hexagonal_grid, icosphere, square_grid};
+use surfine_points::{Neighborhood, PointSet, RefineParams, Refined};
+use surfine_reference::coloring::{Classes, coloring};
+use surfine_reference::insertion::{Insertion, Order, Stage, insertion};
+use surfine_reference::{Level, refine_with, run_level};
+
+use crate::clouds::{
+    blue_noise, jittered_grid, levels, random, refine, with_radii_times, with_uneven_radii,
+};
+use crate::measure::assert_same_bytes;
+
+/// The accurate neighbourhood, the fuzzy one, and all four simplifications, at 3 levels.
+fn variants() -> [(&'static str, RefineParams); 3] {
+    let fuzzy = RefineParams { neighborhood: Neighborhood::Fuzzy, ..levels(3) };
+    let simplified = RefineParams { simplified: true, ..levels(3) };
+    [("accurate", levels(3)), ("fuzzy", fuzzy), ("simplified", simplified)]
+}
+
+fn refine_in_order(points: &PointSet, params: &RefineParams, order: Order) -> Refined {
+    refine_with(points, params, order, &mut |_| ()).expect("the points and parameters are fit")
+}
+
+/// Refines in every order with every variant and compares all bytes.
+#[track_caller]
+fn assert_order_is_invisible(points: &PointSet, cloud: &str) {
+    for (variant, params) in variants() {
+        let together = refine_in_order(points, &params, Order::Together);
+        assert!(together.points.len() > 2 * points.len(), "{cloud}, {variant}: hardly refined");
+        for order in [Order::Ascending, Order::Descending] {
+            let other = refine_in_order(points, &params, order);
+            assert_same_bytes(&together, &other, &format!("{cloud}, {variant}, {order:?}"));
+        }
+    }
+}
+
+#[test]
+fn order_is_invisible_on_a_random_torus() {
+    assert_order_is_invisible(&random(Shape::Torus, 2000, 1), "random torus");
+}
+
+#[test]
+fn order_is_invisible_on_random_spheres() {
+    for seed in 1..=2 {
+        let cloud = random(Shape::Sphere, 500, seed);
+        assert_order_is_invisible(&cloud, &format!("random sphere, seed {seed}"));
+    }
+}
+
+#[test]
+fn order_is_invisible_on_blue_noise() {
+    assert_order_is_invisible(&blue_noise(Shape::Ellipsoid, 500, 1), "ellipsoid");
+}
+
+#[test]
+fn order_is_invisible_on_lattices_full_of_ties() {
+    assert_order_is_invisible(&square_grid(20), "square grid");
+    assert_order_is_invisible(&hexagonal_grid(11), "hexagonal grid");
+    assert_order_is_invisible(&icosphere(2), "icosphere");
+}
+
+#[test]
+fn order_is_invisible_on_a_jittered_grid() {
+    assert_order_is_invisible(&jittered_grid(20, 1), "jittered grid");
+}
+
+#[test]
+fn order_is_invisible_on_saddles_with_a_border() {
+    assert_order_is_invisible(&random(Shape::Saddle, 500, 1), "random saddle");
+    assert_order_is_invisible(&blue_noise(Shape::Saddle, 500, 1), "saddle");
+}
+
+#[test]
+fn order_is_invisible_with_generous_radii() {
+    for factor in [1.5, 2.0] {
+        let cloud = with_radii_times(random(Shape::Torus, 400, 2), factor);
+        assert_order_is_invisible(&cloud, &format!("random torus, radii times {factor}"));
+        let cloud = with_radii_times(square_grid(15), factor);
+        assert_order_is_invisible(&cloud, &format!("square grid, radii times {factor}"));
+    }
+}
+
+#[test]
+fn order_is_invisible_with_uneven_radii() {
+    // Neighbours of very different radii see each other from one side only: conflicts must be found from that side.
+    let cloud = with_uneven_radii(random(Shape::Torus, 400, 3), 1);
+    assert_order_is_invisible(&cloud, "random torus, uneven radii");
+    let cloud = with_uneven_radii(blue_noise(Shape::Sphere, 400, 3), 2);
+    assert_order_is_invisible(&cloud, "sphere, uneven radii");
+    assert_order_is_invisible(&with_uneven_radii(hexagonal_grid(10), 3), "hexagons, uneven radii");
+}
+
+#[test]
+fn number_of_threads_is_invisible() {
+    let cloud = with_uneven_radii(random(Shape::Torus, 500, 4), 4);
+    let with_threads = |threads| {
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.expect("threads can be started").install(|| refine(&cloud, &levels(3)))
+    };
+    let one = with_threads(1);
+    for threads in [2, 5] {
+        assert_same_bytes(&one, &with_threads(threads), &format!("{threads} threads"));
+    }
+}
+
+/// The insertion of one level under classes of the caller's choice.
+fn insert(points: &PointSet, classes: impl Fn(&Classes) -> Classes, order: Order) -> Insertion {
+    let level = Level::new(points);
+    let params = levels(1);
+    let (state, _) = run_level(&level, &params, order, &mut |_| ());
+    assert_eq!(state.classes, coloring(&state.conflicts));
+    let stage = Stage {
+        level: &level,
+        rings: &state.rings,
+        candidates: &state.candidates,
+        candidate_grid: &state.candidate_grid,
+        params: &params,
+    };
+    insertion(stage, &classes(&state.classes), order)
+}
+
+/// Every point in a class of its own, in the order of the classes that are given.
+fn one_by_one(classes: &Classes) -> Classes {
+    let members = classes.members.iter().flatten().map(|&p| vec![p]).collect();
+    Classes { class: Vec::new(), members }
+}
+
+/// Every point in the same class.
+fn all_at_once(classes: &Classes) -> Classes {
+    let mut all: Vec<u32> = classes.members.concat();
+    all.sort_unstable();
+    Classes { class: Vec::new(), members: vec![all] }
+}
+
+#[test]
+fn classes_give_the_sequential_loop_of_the_paper() {
+    let cloud = random(Shape::Torus, 1000, 5);
+    let by_class = insert(&cloud, Classes::clone, Order::Together);
+    let sequential = insert(&cloud, one_by_one, Order::Together);
+    assert!(by_class == sequential, "a class is not what its points give one by one");
+}
+
+#[test]
+fn order_shows_as_soon_as_conflicts_are_ignored() {
+    // Or else the tests above would pass with an empty conflict graph.
+    let cloud = random(Shape::Torus, 1000, 5);
+    let ascending = insert(&cloud, all_at_once, Order::Ascending);
+    assert!(ascending != insert(&cloud, all_at_once, Order::Descending));
+    assert!(ascending != insert(&cloud, all_at_once, Order::Together));
+}

@@ -80,13 +80,13 @@ fn scaled_radii(mut points: PointSet, factor: f32) -> PointSet {
     points
 }
 
-/// A small dense sphere on a large coarse one: cells that fit neither, and sheets that meet.
+/// A small dense sphere beside a large coarse one: cells that fit neither.
 fn two_scales() -> PointSet {
     let mut points = sample(Shape::Sphere, Sampling::Random, 300, 6);
     let small = sample(Shape::Sphere, Sampling::BlueNoise, 400, 7);
-    let place = |x: &Vec3| *x * 0.2 + Vec3::new(1.1, 0.0, 0.0);
+    let place = |x: &Vec3| *x * 0.4 + Vec3::new(2.0, 0.0, 0.0);
     points.positions.extend(small.positions.iter().map(place));
     points.normals.extend(&small.normals);
-    points.radii.extend(small.radii.iter().map(|r| r * 0.2));
+    points.radii.extend(small.radii.iter().map(|r| r * 0.4));
     points
 }

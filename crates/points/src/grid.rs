@@ -33,20 +33,22 @@ pub struct Grid {
 const SLACK: f32 = 1.0 + 1e-4;
 
 impl GridShape {
-    /// A grid for points of these radii: cells as large as the mean radius, about two cells a point.
+    /// A grid for points of these radii: cells as large as their harmonic mean. Where radii differ much, cells that are small for the large ones cost less than cells that hold whole clusters.
     pub fn fit(positions: &[Vec3], radii: &[f32]) -> Self {
         let low = positions.iter().copied().reduce(Vec3::min).unwrap_or(Vec3::ZERO);
         let high = positions.iter().copied().reduce(Vec3::max).unwrap_or(Vec3::ZERO);
         let extent = (high - low).max_element();
-        let mean = radii.iter().map(|&r| f64::from(r)).sum::<f64>() / radii.len().max(1) as f64;
+        let inverse = radii.iter().map(|&r| 1.0 / f64::from(r)).sum::<f64>();
+        let mean = if inverse > 0.0 { radii.len() as f64 / inverse } else { 1.0 };
         // 2^20 cells along the longest side keep cell coordinates exact in f32.
         let cell = (mean as f32).max(extent / 1_048_576.0).max(1e-30);
         Self::with_cell(low, cell, positions.len())
     }
 
-    /// A grid of that cell size and about two cells a point.
+    /// A grid of that cell size with about two to four cells a point, and not so few that a query of some cells' width
+    /// wraps around.
     pub fn with_cell(origin: Vec3, cell: f32, points: usize) -> Self {
-        let total = (2 * points.max(32)).next_power_of_two().trailing_zeros().min(27);
+        let total = (2 * points).next_power_of_two().trailing_zeros().clamp(15, 27);
         Self { origin, cell, bits: [total.div_ceil(3), (total + 1) / 3, total / 3] }
     }
 

@@ -94,8 +94,8 @@ impl<'a> Samples<'a> {
 /// Weight of two samples at this share of the reach, 0 to 1: the paper's `(1 - d / (2 r_max))^8`, with its limit for
 /// close pairs (section 4.4), without which a few very close ones outweigh everything around them.
 fn pair_weight(share: f64) -> f64 {
-    // 0.65 (1 - (n / m)^1.5) for n of m = 5 n samples.
-    const CLOSEST: f64 = 0.592;
+    // 0.65 (1 - (n / m)^1.5) for n of m = 8 n samples.
+    const CLOSEST: f64 = 0.621;
     let square = |v: f64| v * v;
     square(square(square(1.0 - share.max(CLOSEST))))
 }
