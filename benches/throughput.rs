@@ -1,7 +1,8 @@
 //! Throughput of both backends: whole runs, several levels, and single stages, in new points a second.
 //!
-//! `cargo bench` measures with the adapter that `WGPU_ADAPTER_NAME` names, else with the best one. It takes about
-//! twenty minutes with a software adapter; `cargo bench -- levels` or any other part of an id picks some.
+//! `cargo bench --bench throughput` measures with the adapter that `WGPU_ADAPTER_NAME` names, else with the best one,
+//! for some ten minutes where that is a software adapter. `-- stage` or any other part of an id picks some of them;
+//! making the clouds takes up to a minute all the same. `-- --test` runs each once, on small clouds.
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, BenchmarkId, Criterion, SamplingMode, Throughput};
@@ -124,7 +125,7 @@ impl Runs<'_> {
 
     /// Time of one stage in one run; never zero, which would stop criterion.
     fn time(&mut self, stage: usize, run: usize) -> Duration {
-        self.report(run).stages[stage].1.max(Duration::from_nanos(2))
+        self.report(run).stages[stage].1.max(Duration::from_nanos(1))
     }
 }
 
@@ -138,17 +139,18 @@ fn bench_stages(
     let mut runs = Runs { refine: Box::new(refine), reports: Vec::new() };
     let stages: Vec<&str> = runs.report(0).stages.iter().map(|(stage, _)| *stage).collect();
     group.throughput(Throughput::Elements(case.new_points));
+    // Criterion plans by the time that a call takes, which says nothing here. This keeps it from warming up, and from
+    // warnings of too little time.
+    group.warm_up_time(Duration::from_nanos(1));
+    group.measurement_time(Duration::from_millis(1));
     for (index, stage) in stages.into_iter().enumerate() {
-        // Warming up takes the first run, which is how long criterion expects others to be: two for each sample.
-        group.warm_up_time(Duration::from_nanos(1));
-        group.measurement_time(runs.time(index, 0).mul_f64(1.5 * SAMPLES as f64));
         let id = BenchmarkId::new(stage, format!("{backend}/{}", case.name));
-        let mut next = 0;
+        let mut samples = 0..;
         group.bench_function(id, |b| {
+            // A sample is one run, whatever number of iterations is asked for.
             b.iter_custom(|iterations| {
-                let first = next;
-                next += iterations as usize;
-                (first..next).map(|run| runs.time(index, run)).sum()
+                let run = samples.next().expect("the range is endless");
+                runs.time(index, run) * iterations as u32
             });
         });
     }
@@ -156,6 +158,7 @@ fn bench_stages(
 
 fn bench(criterion: &mut Criterion, is_test: bool) {
     let mut device = open();
+    println!("making the clouds");
     let cases = cases(is_test);
     let mut refine = group(criterion, "refine");
     for case in &cases {

@@ -1,5 +1,5 @@
 // grid: counts the points of each cell, and notes the cell and the rank of each point there.
-// One invocation per point. dispatch: first point, number of points.
+// One invocation per point.
 
 @group(0) @binding(2) var<storage, read> points: array<Point>;
 @group(0) @binding(3) var<storage, read_write> grid: array<atomic<u32>>;

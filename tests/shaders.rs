@@ -378,8 +378,13 @@ fn constant(file: &str, name: &str) -> u32 {
 
 #[test]
 fn constants_are_those_of_the_reference() {
-    // The others are private there: the conformance tests see them through what they do.
+    use surfine_reference::{candidates, insertion, pn_triangle};
     let cases = [
+        ("new_ring", "COVER", insertion::COVER.to_bits()),
+        ("new_ring", "HYSTERESIS", insertion::HYSTERESIS.to_bits()),
+        ("new_ring", "SMALLEST_SPLIT", insertion::SMALLEST_SPLIT.to_bits()),
+        ("fan_triangle", "WIDEST_GAP", candidates::WIDEST_GAP.to_bits()),
+        ("pn_triangle", "FLAT", pn_triangle::FLAT.to_bits()),
         ("math", "TAU", surfine_reference::math::TAU.to_bits()),
         ("math", "PI", surfine_reference::math::PI.to_bits()),
         ("records", "NONE", surfine_reference::NO_POINT),

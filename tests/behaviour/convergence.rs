@@ -49,10 +49,9 @@ fn further_levels_stay_on_the_surface_of_the_first() {
     for shape in [Shape::Sphere, Shape::Torus, Shape::Ellipsoid] {
         let cloud = blue_noise(shape, 800, 1);
         let error = |l| mean_distance(&refine(&cloud, &levels(l)), shape);
-        // A level interpolates points that are off already, and adds errors of a ninth of the size. Measured:
+        // Later levels add errors of their own smaller spacing. Measured ratios .76, .68 and .70.
         let (first, fourth) = (error(1), error(4));
-        eprintln!("{shape} {first:e} {fourth:e} {}", fourth / first);
-        assert!(fourth < 2.0 * first, "{shape}: {first:e} after one level, {fourth:e} after four");
+        assert!(fourth < 1.1 * first, "{shape}: {first:e} after one level, {fourth:e} after four");
     }
 }
 
@@ -70,9 +69,8 @@ fn cheaper_variants_grow_alike_on_blue_noise() {
         let accurate = growths(&refine(&cloud, &levels(3)));
         for (variant, params) in variants() {
             for (found, expected) in growths(&refine(&cloud, &params)).into_iter().zip(&accurate) {
-                // Measured differences up to .006.
+                // Measured differences up to .0084, on the torus.
                 let difference = (found - expected).abs();
-                eprintln!("{shape} {variant} {difference}");
                 assert!(difference < 0.02, "{shape}, {variant}: {found} instead of {expected}");
             }
         }
@@ -90,9 +88,9 @@ fn cheaper_variants_stay_on_the_surface() {
         let accurate = errors(&levels(3));
         for (variant, params) in variants() {
             let found = errors(&params);
-            eprintln!("{shape} {variant} {found:?} {accurate:?}");
             for (found, expected) in found.into_iter().zip(accurate) {
-                assert!(found < 1.3 * expected, "{shape}, {variant}: {found}, default {expected}");
+                // Measured ratios .974 to 1.007: on even input the variants choose the same triangles.
+                assert!(found < 1.1 * expected, "{shape}, {variant}: {found}, default {expected}");
             }
         }
     }

@@ -27,7 +27,7 @@ fn assert_nothing_happens(cloud: &PointSet) -> Refined {
 
 /// Fails unless all columns are finite and new normals have unit length.
 #[track_caller]
-fn assert_sound(refined: &Refined) {
+pub(crate) fn assert_sound(refined: &Refined) {
     refined.points.validate().expect("the result is fit for another refinement");
     let new = refined.level_sizes[0]..;
     for n in &refined.points.normals[new] {
@@ -123,26 +123,6 @@ fn a_point_far_away_is_left_alone_and_disturbs_nothing() {
     assert_eq!(vector_bits(&new.positions[301..]), vector_bits(&alone.positions[300..]));
     assert_eq!(bits(&new.radii[301..]), bits(&alone.radii[300..]));
     assert_eq!(bits(&new.radii[..300]), bits(&alone.radii[..300]));
-}
-
-#[test]
-fn a_sheet_does_not_take_part_in_one_of_opposite_normals_in_the_same_place() {
-    let out = blue_noise(Shape::Sphere, 300, 1);
-    let mut inside = out.clone();
-    inside.normals.iter_mut().for_each(|n| *n = -*n);
-    let refined = refine(&joined(out, &inside), &levels(2));
-    assert_sound(&refined);
-    // Both sheets discard each other's candidates; measured 1.99 and 2.36 instead of the 2.98 of a single one.
-    for growth in growths(&refined) {
-        assert!((1.8..3.0).contains(&growth), "growth {growth}");
-    }
-    for (i, corners) in refined.parents.iter().enumerate() {
-        let points = &refined.points;
-        let outward = |p: usize| points.normals[p].dot(points.positions[p]) > 0.0;
-        let [a, b, c] = corners.map(|c| outward(c as usize));
-        assert!(a == b && b == c, "new point {i} has corners of both sheets");
-        assert_eq!(outward(600 + i), a, "the normal of new point {i} is turned over");
-    }
 }
 
 #[test]

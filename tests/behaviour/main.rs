@@ -6,6 +6,7 @@
 
 mod attributes;
 mod clouds;
+mod coincident;
 mod convergence;
 mod degenerate;
 mod measure;

@@ -60,7 +60,7 @@ fn other_factors_keep_the_triangles() {
             [("even", blue_noise(shape, 300, 1)), ("random", random(shape, 300, 1))]
         {
             let plain = refine(&cloud, &levels(2));
-            for factor in [1e-6, 1e-3, 1e6] {
+            for factor in [1e-6, 1e6] {
                 let refined = refine(&scaled(&cloud, factor), &levels(2));
                 assert_scaled(&plain, &refined, factor, &format!("{kind} {shape} times {factor}"));
             }

@@ -1,4 +1,4 @@
-//! The same bytes from every driver: the CPU backend, lavapipe with each number of threads, and SwiftShader.
+//! The same bytes from every driver: the CPU backend, lavapipe with each number of threads, and `SwiftShader`.
 //!
 //! Runs that the threads of lavapipe order differently are a race test too: no result may depend on atomic order.
 
@@ -82,7 +82,7 @@ fn lavapipe() -> String {
     manifests.join(":")
 }
 
-/// Manifest of SwiftShader, which no distribution puts in a fixed place.
+/// Manifest of `SwiftShader`, which no distribution puts in a fixed place.
 fn swiftshader() -> String {
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let folder = std::env::var_os("SURFINE_SWIFTSHADER")

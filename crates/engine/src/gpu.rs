@@ -41,9 +41,7 @@ pub struct Gpu {
 
 /// The adapters of this machine, hardware first.
 pub fn adapters() -> Vec<wgpu::Adapter> {
-    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-    // Tells a Mesa layer to stay out: it chooses among devices for windows and complains where there are none.
-    descriptor.flags |= wgpu::InstanceFlags::empty();
+    let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
     let instance = wgpu::Instance::new(descriptor);
     let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
     adapters.sort_by_key(|a| rank(a.get_info().device_type));

@@ -155,12 +155,9 @@ impl Refiner {
             let mut clock = Clock { at, progress, times: Vec::new(), begin: Instant::now() };
             let step =
                 Params { points: count as u32, level, ..Params::new(params).with_grid(&shape) };
-            let mut report = if level == 1 {
-                let grid = Grid::build(shape, (0..).zip(points.positions.iter().copied()));
-                self.run_step(variant(params), step, Some(&grid), 0, &mut clock)?
-            } else {
-                self.run_step(variant(params), step, None, count - points.len(), &mut clock)?
-            };
+            let input = (level == 1).then_some((&shape, points));
+            let earlier = count - points.len();
+            let mut report = self.run_step(variant(params), step, input, earlier, &mut clock)?;
             report.stages = clock.stop();
             level_sizes.push(report.points_out);
             // The area stays, so the spacing goes with the root of the number of points, and the grid with it.
@@ -174,12 +171,12 @@ impl Refiner {
         Ok(GpuRefined { points, parents, level_sizes, reports, device_bytes })
     }
 
-    /// Runs the stages of one refinement step. `grid` is that of the input; later levels make theirs.
+    /// Runs the stages of one refinement step. The grid of the `input` is built here, later levels make theirs.
     fn run_step(
         &mut self,
         variant: Variant,
         params: Params,
-        grid: Option<&Grid>,
+        input: Option<(&GridShape, &PointSet)>,
         earlier: usize,
         clock: &mut Clock<'_>,
     ) -> Result<LevelReport, Error> {
@@ -187,8 +184,11 @@ impl Refiner {
         let (_, kernels) = kernels.iter().find(|(v, _)| *v == variant).expect("it was prepared");
         let mut step = Step { gpu, kernels, uniforms, buffers, scan, params };
         clock.start("grid");
-        match grid {
-            Some(grid) => step.upload_grid(grid)?,
+        match input {
+            Some((shape, points)) => {
+                let positions = points.positions.iter().copied();
+                step.upload_grid(&Grid::build(*shape, (0..).zip(positions)))?;
+            }
             None => step.grid_points()?,
         }
         clock.start("neighborhood");

@@ -3,7 +3,8 @@
 //! Cells repeat with a period of a power of two along each axis, so a grid of about as many cells as points serves a
 //! cloud of any extent, and no two cells of one query fall together. A query visits every entry whose cell it touches,
 //! far ones of the same residue too: callers test the distance. So neither the cell size nor the period can change a
-//! result, only the time. Twin: `shaders/shared/grid.wgsl`.
+//! result, only the time. Twins: `cells.wgsl` and `ball_walk.wgsl` in
+//! `shaders/shared`.
 
 use glam::{IVec3, Vec3};
 

@@ -761,31 +761,3 @@ fn the_test_data_survives() {
         }
     }
 }
-
-/// Times of a million points: run with `--release -- --ignored --nocapture`.
-#[test]
-#[ignore = "a measurement"]
-fn a_million_points_take_less_than_half_a_second() {
-    use std::time::Instant;
-    let folder = Folder::new();
-    let mut random = fastrand::Rng::with_seed(1);
-    let mut vector = || Vec3::from_array([0; 3].map(|_| random.f32() - 0.5));
-    let positions: Vec<Vec3> = (0..1_000_000).map(|_| vector()).collect();
-    let normals = positions.iter().map(|p| p.normalize()).collect();
-    let points = PointSet::new(positions, normals, vec![0.125; 1_000_000]);
-    let path = folder.path("million.ply");
-    for encoding in ENCODINGS {
-        for _ in 0..3 {
-            let start = Instant::now();
-            ply::write(&path, &points, None, &Source::default(), encoding).unwrap();
-            let written = start.elapsed();
-            let start = Instant::now();
-            let again = ply::read(&path).unwrap().0;
-            let read = start.elapsed();
-            let size = fs::metadata(&path).unwrap().len();
-            println!("{encoding:?}: write {written:.0?}, read {read:.0?}, {size} bytes");
-            assert_eq!(points, again);
-            assert!(encoding == Encoding::Ascii || read.as_millis() < 500);
-        }
-    }
-}

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use surfine_points::RefineParams;
 
 /// A fan triangle needs a gap below π(1 - 1e-4) radians: at π the fan has no triangle there.
-const WIDEST_GAP: f32 = 3.141_278_5;
+pub const WIDEST_GAP: f32 = 3.141_278_5;
 
 /// The possible new points of all fans, one for each ring entry (slot).
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -15,11 +15,11 @@ use rayon::prelude::*;
 use surfine_points::{Grid, RefineParams};
 
 /// Radii exceed the distances they must cover by this factor, so that rounding can't lose the farthest ring.
-const COVER: f32 = 1.02;
+pub const COVER: f32 = 1.02;
 /// A gap or an angle must be wider by this factor to be preferred to an earlier one: regular grids tie.
-const HYSTERESIS: f32 = 1.0 + 1e-5;
+pub const HYSTERESIS: f32 = 1.0 + 1e-5;
 /// A candidate nearer than this to an end of its gap, radians, does not split it.
-const SMALLEST_SPLIT: f32 = 1e-3;
+pub const SMALLEST_SPLIT: f32 = 1e-3;
 
 /// The order in which the points of one class are refined. All give the same result; tests hold that.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

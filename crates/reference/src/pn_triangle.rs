@@ -13,7 +13,7 @@ pub struct Corner {
 }
 
 /// Below this squared cross product of the derivatives, in units of the triangle's own size, a triangle has no normal.
-const FLAT: f32 = 1e-12;
+pub const FLAT: f32 = 1e-12;
 
 /// `b_210 - p_0` (eq. 2): a third of the edge `d` leaving a corner of normal `n`, turned into the tangent plane there
 /// with its length kept. Zero if the edge is along the normal.
