@@ -101,7 +101,7 @@ fn doubled_points_refine_like_single_ones() {
     for level in 1..=2 {
         let new = |r: &Refined| (r.level_sizes[level] - r.level_sizes[0]) as f64;
         let ratio = new(&refined) / new(&expected);
-        // Copies of a triangle discard each other. Measured 1.002 and 1.001.
+        // Copies of a triangle discard each other. Measured 1.002 and 1.000.
         assert!((ratio - 1.0).abs() < 0.02, "level {level}: {ratio} times as many new points");
     }
     let mut places = vector_bits(&refined.points.positions[600..]);
@@ -133,7 +133,7 @@ fn radii_as_large_as_the_cloud_do_no_harm_but_growth() {
         let refined = refine(&cloud, &levels(2));
         assert_sound(&refined);
         assert_eq!(refined.reports[0].ball_neighbors, 150 * 149, "every point sees every other");
-        // All new points count as new neighbours of all, so few are missed. Measured 1.37 to 1.57.
+        // All new points count as new neighbours of all, so few are missed. Measured 1.38 to 1.57.
         for growth in growths(&refined) {
             assert!((1.2..2.0).contains(&growth), "growth {growth}");
         }
@@ -163,7 +163,7 @@ fn lengths_of_normals_do_not_matter_and_are_kept() {
         *n *= [0.01, 0.5, 1.0, 3.0, 1e9][i % 5];
     }
     let mut unit = cloud.clone();
-    unit.normals = cloud.unit_normals();
+    unit.normals.iter_mut().for_each(|n| *n = n.as_dvec3().normalize().as_vec3());
     let (found, expected) = (refine(&cloud, &levels(2)), refine(&unit, &levels(2)));
     assert_eq!(found.parents, expected.parents);
     let (found, expected) = (found.points, expected.points);

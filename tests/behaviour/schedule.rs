@@ -96,6 +96,23 @@ fn order_is_invisible_with_uneven_radii() {
 }
 
 #[test]
+fn order_is_invisible_where_small_radii_make_the_cells_small() {
+    // Cells follow the many small radii, so the balls of the few large ones span many cells.
+    let mut cloud = random(Shape::Torus, 600, 6);
+    for i in (0..cloud.len()).filter(|i| i % 3 != 0) {
+        cloud.radii[i] *= 0.05;
+    }
+    let cloud = with_radii_times(cloud, 1.5);
+    let refined = refine(&cloud, &levels(1));
+    assert!(refined.reports[0].isolated > 300, "small radii see nothing");
+    for (variant, params) in variants() {
+        let ascending = refine_in_order(&cloud, &params, Order::Ascending);
+        let descending = refine_in_order(&cloud, &params, Order::Descending);
+        assert_same_bytes(&ascending, &descending, variant);
+    }
+}
+
+#[test]
 fn number_of_threads_is_invisible() {
     let cloud = with_uneven_radii(random(Shape::Torus, 300, 4), 4);
     let with_threads = |threads| {

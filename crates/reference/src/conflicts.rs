@@ -72,16 +72,18 @@ fn found_from(
         let d = candidates.positions[s] - center;
         reach = reach.max(d.dot(d).sqrt() + params.lambda2 * candidates.rho[s]);
     }
+    // Beyond it no ball reaches, whatever the rounding.
+    let reach_squared = reach * reach * 1.001;
     let mut found = Vec::new();
     candidate_grid.visit_ball(center, reach, |y| {
-        let y = y as usize;
-        let q = candidates.owners[y];
-        if q as usize == p || found.contains(&q) {
+        let position = candidates.positions[y as usize];
+        let d = position - center;
+        let d2 = d.dot(d);
+        let q = candidates.owners[y as usize];
+        if d2 > reach_squared || q as usize == p || found.contains(&q) {
             return;
         }
-        let position = candidates.positions[y];
-        let d = position - center;
-        let close = d.dot(d) < near * near
+        let close = d2 < near * near
             || own.iter().any(|&x| {
                 let d = position - candidates.positions[x];
                 let sphere = params.lambda2 * candidates.rho[x];
