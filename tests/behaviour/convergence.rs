@@ -105,6 +105,6 @@ fn the_accurate_neighbourhood_pays_on_coarse_irregular_points() {
         error(&fuzzy) / error(&levels(2))
     };
     let ratios: Vec<f64> = (1..=6).map(ratio).collect();
-    eprintln!("RATIO {ratios:?} {}", mean(ratios.iter().copied()));
+    // Measured 1.09 to 1.46, mean 1.21.
     assert!(mean(ratios.iter().copied()) > 1.05, "the fuzzy one is off {ratios:?} times as far");
 }

@@ -94,7 +94,8 @@ fn other_parameters_reach_the_kernels() {
 fn degenerate_clouds_give_the_bytes_of_the_reference() {
     let mut device = device();
     let point = |x: f32| (Vec3::new(x, 0.0, 0.0), Vec3::Z, 1.5f32);
-    let cases: [(&str, Vec<(Vec3, Vec3, f32)>); 6] = [
+    type Row = (Vec3, Vec3, f32);
+    let cases: [(&str, Vec<Row>); 6] = [
         ("empty", vec![]),
         ("one", vec![point(0.0)]),
         ("two", vec![point(0.0), point(1.0)]),
