@@ -6,7 +6,7 @@ use crate::tolerance::{EXACT, FLIPPED_DECISIONS, POSITION};
 use std::collections::HashMap;
 use surfine::records::Point;
 use surfine::testing::read;
-use surfine::{PointSet, RefineParams, Refined, Vec3};
+use surfine::{Mode, PointSet, RefineParams, Refined, Refiner, Vec3};
 
 fn flat(vectors: &[Vec3]) -> Vec<f32> {
     vectors.iter().flat_map(|v| v.to_array()).collect()
@@ -143,6 +143,32 @@ fn too_many_neighbors_for_the_driver_are_an_error_that_names_a_point() {
         }
         Err(other) => panic!("{other}"),
     }
+}
+
+#[test]
+fn a_device_without_passthrough_runs_plain_and_says_so() {
+    let adapter = surfine::choose_adapter(None).expect("the suite has an adapter");
+    let descriptor =
+        surfine::wgpu::DeviceDescriptor { required_limits: adapter.limits(), ..Default::default() };
+    let opened = pollster::block_on(adapter.request_device(&descriptor));
+    let (own_device, queue) = opened.expect("the adapter opens");
+    let mut refiner = Refiner::with_device(own_device, queue).expect("the kernels compile");
+    assert_eq!(refiner.gpu().mode, Mode::Plain);
+    let (cloud, _) = whole().remove(1);
+    let params = RefineParams::default();
+    let expected = surfine_reference::refine(&cloud.points, &params).expect("the cloud is sound");
+    let found = refiner.refine(&cloud.points, &params).expect("the device can do it");
+    must_be_close("plain mode", &expected, &found);
+}
+
+#[test]
+fn a_device_of_too_small_limits_is_an_error() {
+    let adapter = surfine::choose_adapter(None).expect("the suite has an adapter");
+    let opened = pollster::block_on(adapter.request_device(&Default::default()));
+    let (own_device, queue) = opened.expect("the adapter opens");
+    // The default limits allow eight storage buffers a stage; the insertion has ten.
+    let error = Refiner::with_device(own_device, queue).expect_err("the limits are too small");
+    assert!(error.to_string().contains("storage"), "{error}");
 }
 
 #[test]

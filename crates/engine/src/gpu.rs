@@ -117,7 +117,7 @@ impl Gpu {
     /// The largest buffer that a kernel can use, bytes.
     pub fn largest_binding(&self) -> u64 {
         let limits = self.device.limits();
-        u64::from(limits.max_storage_buffer_binding_size as u32).min(limits.max_buffer_size)
+        limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
     }
 
     /// Runs `work` and returns the device's own complaint, if there was one, rather than what followed from it.

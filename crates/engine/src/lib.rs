@@ -36,6 +36,11 @@ pub use surfine_points::{
 };
 pub use wgpu;
 
+/// The README's example, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;
+
 /// The parts of the engine that tests run one at a time.
 pub mod testing {
     pub use crate::buffers::Buffer;
