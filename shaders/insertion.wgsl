@@ -44,8 +44,9 @@ fn allocate(p: u32) -> bool {
         if visible(slot) {
             let d = offset_of(slot);
             let d2 = dot3(d, d);
-            near_count += u32(d2 < near * near);
-            outer_count += u32(d2 >= near * near && d2 < ring.radius * ring.radius);
+            let is_near = d2 < near * near && d2 > 0.0;
+            near_count += u32(is_near);
+            outer_count += u32(!is_near && d2 < ring.radius * ring.radius);
         }
     }
     // Each candidate can enter N' or bring in one point of Y.
@@ -68,7 +69,8 @@ fn gather(p: u32) {
         }
         let d = offset_of(slot);
         let d2 = dot3(d, d);
-        if d2 < near * near {
+        // A new point in the centre's own place has no direction: it can only discard.
+        if d2 < near * near && d2 > 0.0 {
             set_member(ring.size, slot, angle_of(slot));
             ring.size += 1u;
         } else if d2 < ring.radius * ring.radius {
@@ -111,7 +113,7 @@ fn complete(p: u32) {
             add(chosen);
         } else {
             atomicStore(&states[chosen], USED);
-            if !is_member(h) {
+            if can_join(h) {
                 add(h);
             }
         }

@@ -10,7 +10,7 @@ as_root() {
 # A software Vulkan driver and its loader: the GPU suite fails without an adapter.
 packages=""
 ls /usr/share/vulkan/icd.d/lvp_icd*.json >/dev/null 2>&1 || packages="$packages mesa-vulkan-drivers"
-ldconfig -p | grep -q 'libvulkan\.so\.1' || packages="$packages libvulkan1"
+ls /usr/lib/*/libvulkan.so.1 >/dev/null 2>&1 || packages="$packages libvulkan1"
 # The second software driver comes with an npm package.
 if [ ! -e target/swiftshader/libvk_swiftshader.so ]; then
     command -v npm >/dev/null 2>&1 || packages="$packages nodejs npm"

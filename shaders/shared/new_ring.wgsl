@@ -72,13 +72,14 @@ fn next_member(i: u32) -> u32 {
     return select(i + 1u, 0u, i + 1u == ring.size);
 }
 
-fn is_member(slot: u32) -> bool {
+/// Whether a new point is not yet in N' and not in the centre's own place.
+fn can_join(slot: u32) -> bool {
     for (var i = 0u; i < ring.size; i++) {
         if slot_at(i) == slot {
-            return true;
+            return false;
         }
     }
-    return false;
+    return any(offset_of(slot) != vec3(0.0));
 }
 
 /// Directed angle on the tangent plane from member i to the next one, in [0, 2π].
@@ -226,6 +227,6 @@ fn store_radii(p: u32) {
             cover(next, side);
         }
     }
-    let radius = select(COVER * sqrt(farthest), ring.radius, ring.size == 0u);
+    let radius = select(COVER * sqrt(farthest), ring.radius, farthest == 0.0);
     atomicStore(&next_radii[p], bitcast<u32>(radius));
 }

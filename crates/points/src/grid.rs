@@ -40,7 +40,10 @@ impl GridShape {
         let high = positions.iter().copied().reduce(Vec3::max).unwrap_or(Vec3::ZERO);
         let extent = (high - low).max_element();
         let inverse = radii.iter().map(|&r| 1.0 / f64::from(r)).sum::<f64>();
-        let mean = if inverse > 0.0 { radii.len() as f64 / inverse } else { 1.0 };
+        let sum = radii.iter().map(|&r| f64::from(r)).sum::<f64>();
+        // A few tiny radii must not make cells that all others search by the thousand.
+        let count = radii.len().max(1) as f64;
+        let mean = (count / inverse.max(1e-30)).max(sum / count / 8.0);
         // 2^20 cells along the longest side keep cell coordinates exact in f32.
         let cell = (mean as f32).max(extent / 1_048_576.0).max(1e-30);
         Self::with_cell(low, cell, positions.len())

@@ -165,7 +165,7 @@ fn refine_point(stage: Stage<'_>, inserted: &[bool], p: u32) -> Refinement {
                 new.push(slot);
                 fan.add(slot, angle);
             }
-            Some(h) if fan.ring.iter().all(|m| m.slot != h) => fan.add(h, fan.angle_of(h)),
+            Some(h) if fan.can_join(h) => fan.add(h, fan.angle_of(h)),
             Some(_) => {}
         }
     }
@@ -205,7 +205,8 @@ impl<'a> Fan<'a> {
             }
             let d = self.offset(slot);
             let d2 = d.dot(d);
-            if d2 < near * near {
+            // A new point in the centre's own place has no direction: it can only discard.
+            if d2 < near * near && d2 > 0.0 {
                 ring.push(Member { slot, angle: self.angle_of(slot), gap: 0.0 });
             } else if d2 < radius * radius {
                 self.outer.push(slot);
@@ -317,6 +318,11 @@ impl<'a> Fan<'a> {
         closest.map(|(h, _)| h)
     }
 
+    /// Whether a new point is not yet in N' and not in the centre's own place.
+    fn can_join(&self, h: u32) -> bool {
+        self.ring.iter().all(|m| m.slot != h) && self.offset(h) != Vec3::ZERO
+    }
+
     /// Adds a new point to N' and measures the two gaps that it makes.
     fn add(&mut self, slot: u32, angle: f32) {
         let at =
@@ -331,7 +337,7 @@ impl<'a> Fan<'a> {
     fn radius(&self, old: f32) -> f32 {
         let farthest =
             self.ring.iter().map(|m| self.offset(m.slot)).map(|d| d.dot(d)).fold(0.0, f32::max);
-        if self.ring.is_empty() { old } else { COVER * farthest.sqrt() }
+        if farthest == 0.0 { old } else { COVER * farthest.sqrt() }
     }
 
     /// Radii that the members of N' need to cover the centre and their two neighbours in N'.
