@@ -24,15 +24,16 @@ fn coloring(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroup
         let taken = taken_classes(p, window);
         if taken.waiting {
             atomicAdd(&counters.uncolored, dispatch.x);
-            return;
+            break;
         }
         if taken.mask != 0xffffffffu {
             let number = window + firstTrailingBit(~taken.mask) + 1u;
             atomicStore(&classes[p], number);
             atomicMax(&counters.classes, number);
-            return;
+            break;
         }
     }
+    note_cut_loops(p);
 }
 
 struct Taken {

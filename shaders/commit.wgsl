@@ -36,11 +36,11 @@ fn append_point(slot: u32, rank: u32) {
         // Section 7, simplification 4: the displacement is computed for inserted points only.
         let triangle = triangle_of(corners);
         position = displaced_center(triangle);
-        normal = center_cross(triangle, candidate_positions[slot].w);
-        if dot3(normal, normal) <= FLAT {
-            normal = triangle.a.normal + triangle.b.normal + triangle.c.normal;
+        let curved = center_cross(triangle, candidate_positions[slot].w);
+        // Else it stays that of the flat triangle.
+        if dot3(curved, curved) > FLAT {
+            normal = unit(curved);
         }
-        normal = unit(normal);
     }
     let radius = bitcast<f32>(next_radii[params.points + slot]);
     points[params.points + rank] = Point(position, radius, normal, params.level);

@@ -44,7 +44,7 @@ fn allocate(p: u32) -> bool {
         if visible(slot) {
             let d = offset_of(slot);
             let d2 = dot3(d, d);
-            let is_near = d2 < near * near && d2 > 0.0;
+            let is_near = d2 < near * near && is_apart(d2, ring.radius);
             near_count += u32(is_near);
             outer_count += u32(!is_near && d2 < ring.radius * ring.radius);
         }
@@ -70,7 +70,7 @@ fn gather(p: u32) {
         let d = offset_of(slot);
         let d2 = dot3(d, d);
         // A new point in the centre's own place has no direction: it can only discard.
-        if d2 < near * near && d2 > 0.0 {
+        if d2 < near * near && is_apart(d2, ring.radius) {
             set_member(ring.size, slot, angle_of(slot));
             ring.size += 1u;
         } else if d2 < ring.radius * ring.radius {
@@ -135,7 +135,8 @@ fn closest_candidate(p: u32) -> u32 {
         }
         let d = offset_of(slot);
         let d2 = dot3(d, d);
-        if best == NONE || d2 * HYSTERESIS < least {
+        let closer = best == NONE || d2 * HYSTERESIS < least;
+        if is_apart(d2, ring.radius) && closer {
             best = slot;
             least = d2;
         }

@@ -1,5 +1,5 @@
 // neighborhood: removes the members of N^E that lie behind others (eq. 8).
-// Twin: `badness` in crates/reference/src/neighborhood.rs
+// Twin: `is_behind` in crates/reference/src/neighborhood.rs
 // One invocation per arena entry: the entries of a point are compared with each other, which is too much for one.
 
 @group(0) @binding(2) var<storage, read> points: array<Point>;
@@ -7,6 +7,9 @@
 /// As in neighborhood_ball; the last word becomes NONE for removed members.
 @group(0) @binding(4) var<storage, read_write> arena: array<vec4<u32>>;
 @group(0) @binding(5) var<storage, read_write> counters: Counters;
+
+/// Largest badness of a neighbour: 1, and a margin because regular grids give exactly that.
+const WORST_BADNESS: f32 = 1.001;
 
 /// The accurate neighbourhood N^g, or else the fuzzy one N^f.
 override accurate: bool = true;
@@ -19,7 +22,7 @@ fn neighborhood_badness(@builtin(global_invocation_id) id: vec3<u32>, @builtin(n
     }
     let p = arena[i].w;
     // Removal is simultaneous: only the last word changes, and nobody else reads it.
-    if p < params.points && badness(p, i) > 1.0 + 1e-3 {
+    if p < params.points && is_behind(p, i) {
         arena[i].w = NONE;
     }
     note_cut_loops(p);
@@ -33,9 +36,10 @@ fn plane_vector(center: Point, i: u32) -> vec3<f32> {
     return (points[arena[i].x].position - center.position) * (1.0 / center.radius);
 }
 
-/// Badness w_i (eq. 8): how far member i lies behind its successors and predecessors.
-/// The maximum is taken over signed squares of sin α_ij, which order the same and need no root per pair.
-fn badness(p: u32, i: u32) -> f32 {
+/// Whether the badness w_i (eq. 8) of member i is above 1: it lies behind its successors and predecessors.
+/// The maximum is taken over signed squares of sin α_ij, which order the same and need no root per pair. It only
+/// rises, so the first values that are too large decide.
+fn is_behind(p: u32, i: u32) -> bool {
     let center = points[p];
     let block = blocks[p];
     let own = plane_vector(center, i);
@@ -53,13 +57,17 @@ fn badness(p: u32, i: u32) -> f32 {
         let along = dot3(other, c);
         let sin_squared = along * abs(along) / product;
         // An exactly collinear point counts as successor.
-        if x * bitcast<f32>(arena[j].z) - y * bitcast<f32>(arena[j].y) >= 0.0 {
-            successor = max(successor, sin_squared);
-        } else {
-            predecessor = max(predecessor, sin_squared);
+        let succeeds = x * bitcast<f32>(arena[j].z) - y * bitcast<f32>(arena[j].y) >= 0.0;
+        if sin_squared <= select(predecessor, successor, succeeds) {
+            continue;
+        }
+        successor = select(successor, sin_squared, succeeds);
+        predecessor = select(sin_squared, predecessor, succeeds);
+        if plane_badness(successor) + plane_badness(predecessor) > WORST_BADNESS {
+            return true;
         }
     }
-    return plane_badness(successor) + plane_badness(predecessor);
+    return false;
 }
 
 /// w_ij from the signed square of sin α_ij; 0 for an empty set, which passes -2.

@@ -46,11 +46,11 @@ fn count_ball(size: u32) {
     }
 }
 
-/// Whether q is in N^E (eq. 7): within the radius and not at the same place.
+/// Whether q is in N^E (eq. 7): within the radius and not in the same place.
 fn in_ball(center: Point, p: u32, q: u32) -> bool {
     let d = points[q].position - center.position;
     let d2 = dot3(d, d);
-    return q != p && d2 <= center.radius * center.radius && d2 != 0.0;
+    return q != p && d2 <= center.radius * center.radius && is_apart(d2, center.radius);
 }
 
 fn ball_size(p: u32) -> u32 {

@@ -19,6 +19,12 @@ fn unit(v: vec3<f32>) -> vec3<f32> {
     return v * (1.0 / sqrt(dot3(v, v)));
 }
 
+/// Whether points at this squared distance have a direction to each other, seen at the scale of a radius. Nearer ones
+/// count as being in one place.
+fn is_apart(squared_distance: f32, radius: f32) -> bool {
+    return squared_distance > radius * radius * 1e-12;
+}
+
 /// Two unit vectors that span the plane of normal n, counter-clockwise seen from outside.
 struct TangentFrame {
     e1: vec3<f32>,

@@ -79,7 +79,8 @@ fn can_join(slot: u32) -> bool {
             return false;
         }
     }
-    return any(offset_of(slot) != vec3(0.0));
+    let d = offset_of(slot);
+    return is_apart(dot3(d, d), ring.radius);
 }
 
 /// Directed angle on the tangent plane from member i to the next one, in [0, 2π].
@@ -227,6 +228,6 @@ fn store_radii(p: u32) {
             cover(next, side);
         }
     }
-    let radius = select(COVER * sqrt(farthest), ring.radius, farthest == 0.0);
+    let radius = select(COVER * sqrt(farthest), ring.radius, ring.size == 0u);
     atomicStore(&next_radii[p], bitcast<u32>(radius));
 }

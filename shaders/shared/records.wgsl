@@ -54,7 +54,7 @@ struct Counters {
     ball_low: atomic<u32>,
     /// The same, high word.
     ball_high: atomic<u32>,
-    /// Invocations in which the driver cut loops short; see cut_loops.wgsl.
+    /// One more than the last point for which the driver cut loops short; see cut_loops.wgsl.
     cut_loops: atomic<u32>,
 }
 

@@ -1,7 +1,7 @@
 //! The colouring rounds and the sort by class.
 
 use crate::conflicts::ConflictBuffers;
-use crate::harness::{compare_equal, device, must, steps};
+use crate::harness::{GUARD_WORD, compare_equal, device, must, steps};
 use surfine::records::Counters;
 
 #[test]
@@ -46,8 +46,19 @@ fn points_are_sorted_by_class() {
         let (sorted, ranks) =
             (device.output::<u32>("sorted", words), device.output::<[u32; 2]>("ranks", n));
         device.run(step.run("class_count", [0; 4], n), &[&classes, &sorted, &ranks]);
-        let sizes: Vec<u32> = device.read(&sorted, words);
-        let expected: Vec<u32> = members.iter().map(|m| m.len() as u32).collect();
-        must(compare_equal(&step.name, &expected, &sizes[1..=members.len()]));
+        let mut summed: Vec<u32> = device.read(&sorted, words);
+        for i in 1..=members.len() {
+            summed[i] += summed[i - 1];
+        }
+        let sorted = device.buffer("summed", &[summed, vec![GUARD_WORD; 16]].concat());
+        let fill = step.run("sort_fill", [n as u32, members.len() as u32, 0, 0], n);
+        device.run(fill, &[&ranks, &sorted]);
+        let found: Vec<u32> = device.read(&sorted, words);
+        let (starts, found) = found.split_at(members.len() + 1);
+        for (class, expected) in members.iter().enumerate() {
+            let mut list = found[starts[class] as usize..starts[class + 1] as usize].to_vec();
+            list.sort_unstable();
+            must(compare_equal(&format!("{}: class {class}", step.name), expected, &list));
+        }
     }
 }

@@ -199,6 +199,8 @@ pub(crate) struct Run<'a> {
 }
 
 const GUARD: u8 = 0xa5;
+/// Four guard bytes.
+pub(crate) const GUARD_WORD: u32 = 0xa5a5_a5a5;
 const GUARD_BYTES: usize = 64;
 
 /// Compares floats: equal lengths, all finite, and within the tolerance times `scale`.

@@ -24,7 +24,8 @@ Examples:
   surfine refine scan.ply -o fine.ply --json | jq .points_per_second
 
 The points of IN come first in FILE, in their order and unchanged but for their radii; the new points
-follow level by level. Both backends give the same bytes if the adapter's mode is exact. All parameters
+follow level by level. Both backends give the same bytes if the adapter's mode is exact
+and its driver rounds division and square root correctly. All parameters
 are free of scale; lengths have the unit of IN.";
 
 const ADAPTERS_EXAMPLES: &str = "\
@@ -34,7 +35,8 @@ Examples:
   WGPU_ADAPTER_NAME=llvmpipe surfine adapters
 
 A software adapter computes on the CPU; `refine --backend auto` then takes the CPU backend, which is
-faster. Mode exact: the very bytes of the CPU backend. Mode plain: results can differ in rounding.";
+faster. Mode exact: the very bytes of the CPU backend if the driver rounds division and square root
+correctly, as software drivers do. Mode plain: results can differ in rounding.";
 
 const SAMPLE_EXAMPLES: &str = "\
 Examples:

@@ -22,8 +22,15 @@ pub(crate) struct Computed {
 
 /// What a refinement was computed with.
 pub(crate) enum Backend {
-    Gpu { adapter: String, mode: Mode },
-    Cpu { threads: usize },
+    Gpu {
+        adapter: String,
+        mode: Mode,
+        /// Whether the adapter computes on the CPU.
+        software: bool,
+    },
+    Cpu {
+        threads: usize,
+    },
 }
 
 /// Gives the CPU backend its threads; without a wish, those of `RAYON_NUM_THREADS` or one a core.
@@ -53,8 +60,12 @@ pub(crate) fn compute(
     Ok(computed)
 }
 
-/// A hardware GPU if there is one that can do it, else the CPU.
+/// A hardware GPU if there is one that can do it, else the CPU. An adapter that `WGPU_ADAPTER_NAME` asks for is taken
+/// whatever it is.
 fn on_either(points: &PointSet, params: &RefineParams, watch: &Watch) -> Result<Computed, Failure> {
+    if std::env::var("WGPU_ADAPTER_NAME").is_ok_and(|name| !name.is_empty()) {
+        return Ok(on_gpu(&choose_adapter(None)?, points, params, watch)?);
+    }
     let reason = match choose_adapter(None) {
         Err(error) => error.to_string(),
         Ok(adapter) if is_software(&adapter.get_info()) => {
@@ -94,10 +105,11 @@ fn on_gpu(
     watch: &Watch,
 ) -> Result<Computed, Error> {
     let mut refiner = Refiner::with_gpu(Gpu::open(adapter)?)?;
+    let software = is_software(&adapter.get_info());
     let Gpu { mode, name: adapter, .. } = refiner.gpu().clone();
     let begin = Instant::now();
     let refined = refiner.refine_with(points, params, &mut |at| watch.at(at))?;
-    let backend = Backend::Gpu { adapter, mode };
+    let backend = Backend::Gpu { adapter, mode, software };
     Ok(Computed {
         refined,
         backend,

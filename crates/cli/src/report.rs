@@ -32,7 +32,7 @@ pub(crate) struct Report {
     mode: &'static str,
     /// Threads of the CPU backend.
     threads: Option<usize>,
-    /// The most device memory that was in use at the start of a stage, if the driver tells.
+    /// Bytes of the engine's buffers when the last level ended.
     device_bytes: Option<u64>,
     params: Params,
     levels: Vec<Level>,
@@ -88,7 +88,7 @@ impl Report {
     ) -> Self {
         let refined = &computed.refined;
         let (adapter, mode, threads) = match &computed.backend {
-            Backend::Gpu { adapter, mode } => (Some(adapter.clone()), *mode, None),
+            Backend::Gpu { adapter, mode, .. } => (Some(adapter.clone()), *mode, None),
             Backend::Cpu { threads } => (None, Mode::Exact, Some(*threads)),
         };
         Self {
@@ -187,6 +187,10 @@ fn notes(points: &PointSet, source: &Source, computed: &Computed, mode: Mode) ->
             let isolated = counted(report.isolated, "point has", "points have");
             notes.push(format!("level {level}: {isolated} no neighbor, so none new around them"));
         }
+    }
+    if let Backend::Gpu { mode: Mode::Exact, software: false, .. } = computed.backend {
+        let rounds = "if the driver rounds division and square root correctly";
+        notes.push(format!("mode exact on hardware: the bytes of the CPU backend {rounds}"));
     }
     if mode == Mode::Plain {
         notes.push("mode plain: results can differ from the CPU backend's in rounding".into());

@@ -40,13 +40,13 @@ pub enum Error {
         /// Name of the adapter.
         adapter: String,
     },
-    /// A point has more neighbours than the driver can walk through.
+    /// A point has more neighbours than the driver can walk through: software drivers end long loops.
     #[error(
-        "vertex {point} has {neighbors} neighbours within its radius at level {level}, more than {adapter} can walk \
-         through: lower the radii to about 1.25 times the distance to the farthest natural neighbour, or use the CPU"
+        "vertex {point} has too many neighbours at level {level} ({neighbors} within its radius): {adapter} ends loops \
+         early; lower the radii to about 1.25 times the distance to the farthest natural neighbour, or use the CPU"
     )]
     Crowded {
-        /// Index of the point with the most neighbours.
+        /// Index of such a point.
         point: usize,
         /// How many it has.
         neighbors: u32,

@@ -10,7 +10,7 @@ const TIMEOUT: Duration = Duration::from_secs(600);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
     /// SPIR-V in which no operation may be contracted or reassociated: the bytes of the CPU reference on every driver
-    /// that rounds division and square root correctly.
+    /// that rounds division and square root correctly, as software drivers do. Vulkan does not ask it of hardware.
     Exact,
     /// Plain WGSL: the driver may reassociate, so results can differ from the reference in rounding.
     Plain,
@@ -117,7 +117,8 @@ impl Gpu {
     /// The largest buffer that a kernel can use, bytes.
     pub fn largest_binding(&self) -> u64 {
         let limits = self.device.limits();
-        limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
+        // Buffers are rounded up to 16 bytes, and drivers' limits need not be multiples of that.
+        limits.max_storage_buffer_binding_size.min(limits.max_buffer_size) & !15
     }
 
     /// Runs `work` and returns the device's own complaint, if there was one, rather than what followed from it.

@@ -41,10 +41,11 @@ pub use wgpu;
 #[doc = include_str!("../../../README.md")]
 struct Readme;
 
-/// The parts of the engine that tests run one at a time.
+/// The parts of the engine that tests run one at a time; not part of the stable interface.
 pub mod testing {
     pub use crate::buffers::Buffer;
     pub use crate::commands::{Commands, Uniforms};
+    pub use crate::stages::Sizing;
 
     /// Reads the first `count` values of a buffer.
     ///

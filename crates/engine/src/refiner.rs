@@ -4,7 +4,7 @@ use crate::buffers::{self, Buffer};
 use crate::commands::Uniforms;
 use crate::records::{Counters, Params, Point};
 use crate::scan::Scan;
-use crate::stages::{Buffers, Kernels, Step, Variant};
+use crate::stages::{Buffers, Kernels, Sizing, Step, Variant};
 use crate::{Error, Gpu, choose_adapter};
 use std::time::{Duration, Instant};
 use surfine_points::{
@@ -20,6 +20,7 @@ pub struct Refiner {
     uniforms: Uniforms,
     buffers: Buffers,
     scan: Scan,
+    sizing: Sizing,
 }
 
 /// A refined cloud that stays on the device.
@@ -34,7 +35,7 @@ pub struct GpuRefined {
     pub level_sizes: Vec<usize>,
     /// What happened at each refinement step.
     pub reports: Vec<LevelReport>,
-    /// Bytes of device memory in use when the last step ended, the result included.
+    /// Bytes of the refiner's buffers when the last step ended, the result included.
     pub device_bytes: u64,
 }
 
@@ -75,8 +76,9 @@ impl Refiner {
     /// As [`Refiner::with_device`].
     pub fn with_gpu(gpu: Gpu) -> Result<Self, Error> {
         let uniforms = Uniforms::new(&gpu);
-        let (buffers, scan) = (Buffers::new(&gpu)?, Scan::new(&gpu)?);
-        let mut refiner = Self { gpu, kernels: Vec::new(), uniforms, buffers, scan };
+        let (buffers, scan) = gpu.guarded(|| Ok((Buffers::new(&gpu)?, Scan::new(&gpu)?)))?;
+        let sizing = Sizing::default();
+        let mut refiner = Self { gpu, kernels: Vec::new(), uniforms, buffers, scan, sizing };
         refiner.prepare(&RefineParams::default())?;
         Ok(refiner)
     }
@@ -92,6 +94,12 @@ impl Refiner {
             self.kernels.push((variant, Kernels::new(&self.gpu, variant)?));
         }
         Ok(())
+    }
+
+    /// Sets how much is done and provided for at once. No result depends on it; tests shrink it.
+    #[doc(hidden)]
+    pub fn set_sizing(&mut self, sizing: Sizing) {
+        self.sizing = sizing;
     }
 
     /// The device.
@@ -118,7 +126,7 @@ impl Refiner {
         progress: &mut dyn FnMut(Progress),
     ) -> Result<Refined, Error> {
         let result = self.refine_on_device(points, params, progress)?;
-        self.read_back(points, result)
+        self.gpu.guarded(|| self.read_back(points, result))
     }
 
     /// Refines a point set and leaves the result on the device. Attributes stay behind: interpolate them from the
@@ -136,7 +144,12 @@ impl Refiner {
         points.validate()?;
         self.prepare(params)?;
         let gpu = self.gpu.clone();
-        gpu.guarded(|| self.run_levels(points, params, progress))
+        let result = gpu.guarded(|| self.run_levels(points, params, progress));
+        if result.is_err() {
+            // A buffer that could not be had looks like one that was.
+            (self.buffers, self.scan) = (Buffers::new(&gpu)?, Scan::new(&gpu)?);
+        }
+        result
     }
 
     fn run_levels(
@@ -180,9 +193,9 @@ impl Refiner {
         earlier: usize,
         clock: &mut Clock<'_>,
     ) -> Result<LevelReport, Error> {
-        let Self { gpu, kernels, uniforms, buffers, scan } = self;
+        let Self { gpu, kernels, uniforms, buffers, scan, sizing } = self;
         let (_, kernels) = kernels.iter().find(|(v, _)| *v == variant).expect("it was prepared");
-        let mut step = Step { gpu, kernels, uniforms, buffers, scan, params };
+        let mut step = Step { gpu, kernels, uniforms, buffers, scan, sizing, params };
         clock.start("grid");
         match input {
             Some((shape, points)) => {

@@ -45,7 +45,7 @@ pub const SHADERS: &[Shader] = &[
     shader!("candidates", "math", "pn_triangle", "fan_triangle"),
     shader!("conflicts", "cells", "ball_walk", "math", "cut_loops"),
     shader!("conflicts_mirror", "cut_loops"),
-    shader!("coloring"),
+    shader!("coloring", "cut_loops"),
     shader!("class_count"),
     shader!("insertion", "cells", "ball_walk", "math", "pn_triangle", "new_ring", "cut_loops"),
     shader!("commit_count"),

@@ -12,12 +12,27 @@ use crate::shaders::SHADERS;
 use crate::{Error, Gpu};
 use surfine_points::{Grid, Neighborhood};
 
-/// Points whose neighbourhoods are computed together: their scratch memory is used again for the next ones.
-const CHUNK: u32 = 1 << 17;
 /// Rounds of colouring between two looks at what is left.
 const ROUNDS: u32 = 16;
 /// Bytes of a word.
 const WORD: u64 = 4;
+
+/// How much is done and provided for at once. No result depends on it.
+#[derive(Clone, Copy, Debug)]
+pub struct Sizing {
+    /// Points whose neighbourhoods are computed together: their scratch memory is used again for the next ones.
+    pub chunk: u32,
+    /// Points of a class that are refined together.
+    pub part: u32,
+    /// Entries of lists that are provided for each point before their need is known.
+    pub entries: u32,
+}
+
+impl Default for Sizing {
+    fn default() -> Self {
+        Self { chunk: 1 << 17, part: u32::MAX, entries: 24 }
+    }
+}
 
 /// What kernels are compiled for, besides the device.
 pub(crate) type Variant = (Neighborhood, bool);
@@ -95,6 +110,7 @@ pub(crate) struct Step<'a> {
     pub(crate) uniforms: &'a Uniforms,
     pub(crate) buffers: &'a mut Buffers,
     pub(crate) scan: &'a mut Scan,
+    pub(crate) sizing: &'a Sizing,
     pub(crate) params: Params,
 }
 
@@ -118,20 +134,18 @@ impl Step<'_> {
         let (counters, words) = bytes.split_at(size as usize);
         let counters: Counters = bytemuck::pod_read_unaligned(counters);
         if counters.cut_loops > 0 {
-            return Err(self.crowded());
+            return Err(self.crowded(counters.cut_loops as usize - 1));
         }
         Ok((counters, bytemuck::pod_collect_to_vec(words)))
     }
 
-    /// The error that names the point with the most neighbours.
-    fn crowded(&self) -> Error {
-        let n = self.params.points as usize;
-        let blocks = match read_parts(self.gpu, &[(self.buffers.blocks.raw(), 0, 8 * n as u64)]) {
-            Ok(bytes) => bytemuck::pod_collect_to_vec::<u8, [u32; 2]>(&bytes),
+    /// The error that names a point whose neighbours are too many.
+    fn crowded(&self, point: usize) -> Error {
+        let members = [(self.buffers.blocks.raw(), 8 * point as u64 + 4, WORD)];
+        let neighbors = match read_parts(self.gpu, &members) {
+            Ok(bytes) => bytemuck::pod_read_unaligned(&bytes),
             Err(e) => return e,
         };
-        let most = (0..n).max_by_key(|&p| (blocks[p][1], std::cmp::Reverse(p)));
-        let (point, neighbors) = most.map_or((0, 0), |p| (p, blocks[p][1]));
         Error::Crowded {
             point,
             neighbors,
@@ -179,11 +193,12 @@ impl Step<'_> {
     /// `neighborhood`: the rings. Returns the counters.
     pub(crate) fn neighborhood(&mut self) -> Result<Counters, Error> {
         let n = self.params.points;
-        let mut chunk = n.clamp(1, CHUNK);
+        let mut chunk = n.clamp(1, self.sizing.chunk);
         self.buffers.blocks.reserve(self.gpu, 2 * WORD * u64::from(n))?;
         self.buffers.ring_starts.reserve(self.gpu, WORD * (u64::from(n) + 1))?;
-        self.buffers.ring_entries.reserve(self.gpu, 2 * WORD * 7 * u64::from(n))?;
-        self.buffers.arena.reserve(self.gpu, 4 * WORD * 24 * u64::from(chunk))?;
+        let entries = u64::from(self.sizing.entries);
+        self.buffers.ring_entries.reserve(self.gpu, 2 * WORD * entries.min(7) * u64::from(n))?;
+        self.buffers.arena.reserve(self.gpu, 4 * WORD * entries * u64::from(chunk))?;
         self.scan.reserve(self.gpu, n + 1)?;
         loop {
             self.params.arena_words = words_of(&self.buffers.arena);
@@ -238,7 +253,8 @@ impl Step<'_> {
         } else if *chunk > 1 {
             *chunk = chunk.div_ceil(2);
         } else {
-            return Err(self.crowded());
+            let (what, have) = ("neighbours of one point", self.gpu.largest_binding());
+            return Err(Error::Limit { what, need, have, adapter: self.gpu.name.clone() });
         }
         Ok(false)
     }
@@ -251,16 +267,12 @@ impl Step<'_> {
         self.buffers.owners.reserve(self.gpu, WORD * slots)?;
         self.buffers.states.reserve(self.gpu, WORD * slots)?;
         let mut commands = self.commands();
-        self.record_candidates(&mut commands);
-        commands.finish()
-    }
-
-    fn record_candidates(&self, commands: &mut Commands<'_>) {
         let b = &*self.buffers;
         let inputs = [&b.points, &b.ring_starts, &b.ring_entries];
         let outputs = [&b.candidate_positions, &b.candidate_normals, &b.owners, &b.states];
         let kernel = self.kernels.get("candidates");
         commands.run(kernel, &[&inputs[..], &outputs].concat(), [0; 4], self.params.points);
+        commands.finish()
     }
 
     /// `conflicts`: the candidates by cell, then the conflict graph.
@@ -269,8 +281,9 @@ impl Step<'_> {
         let n = u64::from(self.params.points);
         self.buffers.conflict_blocks.reserve(self.gpu, 2 * WORD * n)?;
         self.buffers.mirror_heads.reserve(self.gpu, WORD * n)?;
-        self.buffers.conflict_entries.reserve(self.gpu, WORD * 12 * n)?;
-        self.buffers.mirror_links.reserve(self.gpu, 2 * WORD * 2 * n)?;
+        let entries = u64::from(self.sizing.entries);
+        self.buffers.conflict_entries.reserve(self.gpu, WORD * entries / 2 * n)?;
+        self.buffers.mirror_links.reserve(self.gpu, 2 * WORD * entries / 12 * n)?;
         loop {
             self.params.conflict_entries = words_of(&self.buffers.conflict_entries);
             self.record_conflicts()?;
@@ -359,8 +372,8 @@ impl Step<'_> {
         self.buffers.next_radii.reserve(self.gpu, WORD * (n + slots))?;
         self.buffers.new_indices.reserve(self.gpu, WORD * (slots + 1))?;
         self.scan.reserve(self.gpu, self.params.slots + 1)?;
-        // The largest part of a class that is refined at once.
-        let mut part = self.params.points.max(1);
+        let largest = starts.windows(2).map(|bounds| bounds[1] - bounds[0]).max().unwrap_or(1);
+        let mut part = largest.clamp(1, self.sizing.part);
         loop {
             self.params.arena_words = words_of(&self.buffers.arena);
             self.record_insertion(starts, part)?;
@@ -369,6 +382,8 @@ impl Step<'_> {
             if self.make_room_in_arena(&counters, &mut part)? {
                 return Ok(totals[0]);
             }
+            // The run that lacked memory has left marks on the candidates.
+            self.candidates()?;
         }
     }
 
@@ -378,8 +393,6 @@ impl Step<'_> {
         let mut commands = self.commands();
         commands.clear(&b.counters, words_of(&b.counters).into());
         commands.clear(&b.next_radii, u64::from(points) + u64::from(slots));
-        // A run that lacked memory has left marks on the candidates.
-        self.record_candidates(&mut commands);
         let inputs = [&b.points, &b.ring_starts, &b.candidate_positions, &b.candidate_normals];
         let lists = [&b.grid, &b.class_members];
         let outputs = [&b.states, &b.next_radii, &b.arena, &b.counters];

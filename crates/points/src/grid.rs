@@ -34,7 +34,8 @@ pub struct Grid {
 const SLACK: f32 = 1.0 + 1e-4;
 
 impl GridShape {
-    /// A grid for points of these radii: cells as large as their harmonic mean. Where radii differ much, cells that are small for the large ones cost less than cells that hold whole clusters.
+    /// A grid for points of these radii: cells as large as their harmonic mean, but no less than an eighth of
+    /// their mean. Where radii differ much, cells that are small for the large ones cost less than cells that hold whole clusters.
     pub fn fit(positions: &[Vec3], radii: &[f32]) -> Self {
         let low = positions.iter().copied().reduce(Vec3::min).unwrap_or(Vec3::ZERO);
         let high = positions.iter().copied().reduce(Vec3::max).unwrap_or(Vec3::ZERO);

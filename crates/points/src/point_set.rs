@@ -110,7 +110,11 @@ impl Values {
             Self::U16(v) => integer!(v, u16),
             Self::I32(v) => integer!(v, i32),
             Self::U32(v) => integer!(v, u32),
-            Self::F32(v) => v.push((v[a] + v[b] + v[c]) / 3.0),
+            Self::F32(v) => {
+                // In f64, where the sum can't overflow.
+                let sum = f64::from(v[a]) + f64::from(v[b]) + f64::from(v[c]);
+                v.push((sum / 3.0) as f32);
+            }
             Self::F64(v) => v.push((v[a] + v[b] + v[c]) / 3.0),
         }
     }
@@ -148,7 +152,7 @@ pub enum Invalid {
          farthest natural neighbour"
     )]
     Radius { point: usize, radius: f32 },
-    #[error("{0} points are more than 2^31 - 1: split the cloud")]
+    #[error("{0} points are too many for indices of 32 bits: split the cloud, or use fewer levels")]
     TooMany(usize),
 }
 
@@ -178,6 +182,16 @@ impl PointSet {
     /// # Errors
     /// The first defect, with the index of its point.
     pub fn validate(&self) -> Result<(), Invalid> {
+        self.validate_numbers()?;
+        (0..self.len()).try_for_each(|point| self.validate_ranges(point))
+    }
+
+    /// Checks the lengths of the columns, and that positions, normals and radii are finite: what a refinement keeps,
+    /// while its radii may leave the range that its input must have.
+    ///
+    /// # Errors
+    /// The first defect.
+    pub fn validate_numbers(&self) -> Result<(), Invalid> {
         let points = self.len();
         if points > i32::MAX as usize {
             return Err(Invalid::TooMany(points));
@@ -189,10 +203,10 @@ impl PointSet {
                 return Err(Invalid::Length { column: column.into(), found, points });
             }
         }
-        (0..points).try_for_each(|point| self.validate_point(point))
+        (0..points).try_for_each(|point| self.validate_finite(point))
     }
 
-    fn validate_point(&self, point: usize) -> Result<(), Invalid> {
+    fn validate_finite(&self, point: usize) -> Result<(), Invalid> {
         let (position, normal, radius) =
             (self.positions[point], self.normals[point], self.radii[point]);
         for (what, values) in [("a coordinate", position), ("a normal component", normal)] {
@@ -203,7 +217,13 @@ impl PointSet {
         if !radius.is_finite() {
             return Err(Invalid::NotFinite { point, what: "the radius", value: radius });
         }
-        // Squares of lengths must stay normal f32 numbers: some drivers flush the others to zero.
+        Ok(())
+    }
+
+    fn validate_ranges(&self, point: usize) -> Result<(), Invalid> {
+        let (position, normal, radius) =
+            (self.positions[point], self.normals[point], self.radii[point]);
+        // Squares of radii must stay normal f32 numbers: some drivers flush the others to zero.
         if position.abs().max_element() > 1e15 {
             return Err(Invalid::TooFar { point, value: position.abs().max_element() });
         }

@@ -14,7 +14,7 @@ pub struct Refined {
     pub level_sizes: Vec<usize>,
     /// What happened at each refinement step.
     pub reports: Vec<LevelReport>,
-    /// Bytes of device memory in use when the last step ended; `None` where no device was used.
+    /// Bytes of the refiner's device buffers when the last step ended; `None` where no device was used.
     pub device_bytes: Option<u64>,
 }
 

@@ -3,7 +3,6 @@
 use crate::Level;
 use crate::candidates::{Candidates, fan_triangle};
 use crate::insertion::Insertion;
-use crate::math::unit;
 use crate::neighborhood::Rings;
 use crate::pn_triangle;
 use surfine_points::RefineParams;
@@ -25,9 +24,9 @@ pub fn commit(
         let (position, normal) = if params.simplified {
             // Section 7, simplification 4: the displacement is computed for inserted points only.
             let corners = triangle.map(|c| level.corner(c));
-            let flat = || unit(corners[0].normal + corners[1].normal + corners[2].normal);
-            let normal =
-                pn_triangle::center_normal(corners, candidates.rho[slot]).unwrap_or_else(flat);
+            // The candidate has the normal of the flat triangle.
+            let normal = pn_triangle::center_normal(corners, candidates.rho[slot])
+                .unwrap_or(candidates.normals[slot]);
             (pn_triangle::displaced_center(corners), normal)
         } else {
             (candidates.positions[slot], candidates.normals[slot])

@@ -7,7 +7,7 @@
 use crate::Level;
 use crate::candidates::Candidates;
 use crate::coloring::Classes;
-use crate::math::{PI, TAU, angle_between, direction_angle, tangent_frame};
+use crate::math::{PI, TAU, angle_between, direction_angle, is_apart, tangent_frame};
 use crate::neighborhood::Rings;
 use crate::pn_triangle::{Corner, curved_angle};
 use glam::Vec3;
@@ -124,6 +124,7 @@ struct Fan<'a> {
     center: Vec3,
     e1: Vec3,
     e2: Vec3,
+    radius: f32,
     inverse_radius: f32,
     /// N', by angle; ties by slot.
     ring: Vec<Member>,
@@ -134,7 +135,7 @@ struct Fan<'a> {
 /// Completes the new neighbourhood N' of one point (section 5).
 fn refine_point(stage: Stage<'_>, inserted: &[bool], p: u32) -> Refinement {
     let mut fan = Fan::new(stage, p);
-    fan.gather(inserted, stage.level.radii[p as usize]);
+    fan.gather(inserted);
     // Candidates of this fan with their angles; each is tried once.
     let mut pending: Vec<(u32, f32)> = stage
         .rings
@@ -169,20 +170,17 @@ fn refine_point(stage: Stage<'_>, inserted: &[bool], p: u32) -> Refinement {
             Some(_) => {}
         }
     }
-    Refinement {
-        inserted: new,
-        radius: fan.radius(stage.level.radii[p as usize]),
-        covers: fan.covers(),
-    }
+    Refinement { inserted: new, radius: fan.new_radius(), covers: fan.covers() }
 }
 
 impl<'a> Fan<'a> {
     fn new(stage: Stage<'a>, p: u32) -> Self {
         let p = p as usize;
         let (e1, e2) = tangent_frame(stage.level.normals[p]);
-        let inverse_radius = 1.0 / stage.level.radii[p];
+        let radius = stage.level.radii[p];
+        let inverse_radius = 1.0 / radius;
         let center = stage.level.positions[p];
-        Self { stage, center, e1, e2, inverse_radius, ring: Vec::new(), outer: Vec::new() }
+        Self { stage, center, e1, e2, radius, inverse_radius, ring: Vec::new(), outer: Vec::new() }
     }
 
     /// A new point relative to the centre.
@@ -196,7 +194,8 @@ impl<'a> Fan<'a> {
     }
 
     /// Starts N' with the new points nearer than λ1·r, and Y with the others nearer than r (eq. 10).
-    fn gather(&mut self, inserted: &[bool], radius: f32) {
+    fn gather(&mut self, inserted: &[bool]) {
+        let radius = self.radius;
         let near = self.stage.params.lambda1 * radius;
         let mut ring = Vec::new();
         self.stage.candidate_grid.visit_ball(self.center, radius, |slot| {
@@ -206,7 +205,7 @@ impl<'a> Fan<'a> {
             let d = self.offset(slot);
             let d2 = d.dot(d);
             // A new point in the centre's own place has no direction: it can only discard.
-            if d2 < near * near && d2 > 0.0 {
+            if d2 < near * near && is_apart(d2, radius) {
                 ring.push(Member { slot, angle: self.angle_of(slot), gap: 0.0 });
             } else if d2 < radius * radius {
                 self.outer.push(slot);
@@ -269,7 +268,8 @@ impl<'a> Fan<'a> {
         for (i, &(slot, _)) in pending.iter().enumerate() {
             let d = self.offset(slot);
             let d2 = d.dot(d);
-            if best.is_none_or(|(_, least)| d2 * HYSTERESIS < least) {
+            let closer = best.is_none_or(|(_, least)| d2 * HYSTERESIS < least);
+            if is_apart(d2, self.radius) && closer {
                 best = Some((i, d2));
             }
         }
@@ -320,7 +320,8 @@ impl<'a> Fan<'a> {
 
     /// Whether a new point is not yet in N' and not in the centre's own place.
     fn can_join(&self, h: u32) -> bool {
-        self.ring.iter().all(|m| m.slot != h) && self.offset(h) != Vec3::ZERO
+        let d = self.offset(h);
+        self.ring.iter().all(|m| m.slot != h) && is_apart(d.dot(d), self.radius)
     }
 
     /// Adds a new point to N' and measures the two gaps that it makes.
@@ -334,10 +335,10 @@ impl<'a> Fan<'a> {
     }
 
     /// New radius of the centre: it covers N'. A point without new neighbours keeps its radius.
-    fn radius(&self, old: f32) -> f32 {
+    fn new_radius(&self) -> f32 {
         let farthest =
             self.ring.iter().map(|m| self.offset(m.slot)).map(|d| d.dot(d)).fold(0.0, f32::max);
-        if farthest == 0.0 { old } else { COVER * farthest.sqrt() }
+        if self.ring.is_empty() { self.radius } else { COVER * farthest.sqrt() }
     }
 
     /// Radii that the members of N' need to cover the centre and their two neighbours in N'.

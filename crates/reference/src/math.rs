@@ -13,6 +13,12 @@ pub fn unit(v: Vec3) -> Vec3 {
     v * (1.0 / v.dot(v).sqrt())
 }
 
+/// Whether points at this squared distance have a direction to each other, seen at the scale of a radius. Nearer ones
+/// count as being in one place.
+pub fn is_apart(squared_distance: f32, radius: f32) -> bool {
+    squared_distance > radius * radius * 1e-12
+}
+
 /// Two unit vectors that span the plane of normal `n`; with `n` they are right-handed, so angles from the first to the
 /// second turn counter-clockwise seen from outside.
 pub fn tangent_frame(n: Vec3) -> (Vec3, Vec3) {

@@ -1,11 +1,14 @@
 //! One-ring neighbourhoods (section 4). Twin: `shaders/neighborhood.wgsl`.
 
 use crate::Level;
-use crate::math::{direction_angle, tangent_frame};
+use crate::math::{direction_angle, is_apart, tangent_frame};
 use crate::pn_triangle::geodesic_distance;
 use glam::Vec3;
 use rayon::prelude::*;
 use surfine_points::{Grid, Neighborhood, RefineParams};
+
+/// Largest badness of a neighbour: 1, and a margin because regular grids give exactly that.
+pub const WORST_BADNESS: f32 = 1.001;
 
 /// A corner of a triangle fan.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,7 +98,7 @@ fn consistent_ball(
         let d = level.positions[id as usize] - center;
         let d2 = d.dot(d);
         // Coincident points have no direction to each other: they are no neighbours.
-        if id as usize == p || d2 > radius * radius || d2 == 0.0 {
+        if id as usize == p || d2 > radius * radius || !is_apart(d2, radius) {
             return;
         }
         size += 1;
@@ -124,7 +127,7 @@ fn consistent(d: Vec3, d2: f32, n0: Vec3, n1: Vec3) -> bool {
 /// Removes the members that lie behind others (eq. 8) and sorts the rest around the centre.
 fn one_ring(ball: &[Neighbor], params: &RefineParams) -> Vec<RingEntry> {
     let mut ring: Vec<(RingEntry, f32)> = (0..ball.len())
-        .filter(|&i| badness(ball, i, params.sin_theta_f()) <= 1.0 + 1e-3)
+        .filter(|&i| !is_behind(ball, i, params.sin_theta_f()))
         .map(|i| {
             let Neighbor { id, x, y, .. } = ball[i];
             (RingEntry { id, angle: direction_angle(y, x) }, x * x + y * y)
@@ -136,27 +139,33 @@ fn one_ring(ball: &[Neighbor], params: &RefineParams) -> Vec<RingEntry> {
     ring.into_iter().map(|(entry, _)| entry).collect()
 }
 
-/// Badness `w_i` (eq. 8): how far member `i` lies behind its successors and predecessors.
+/// Whether the badness `w_i` (eq. 8) of member `i` is above 1: it lies behind its successors and predecessors.
 ///
-/// The maximum is taken over signed squares of `sin α_ij`, which order the same and need no root per pair.
-fn badness(ball: &[Neighbor], i: usize, sin_theta_f: f32) -> f32 {
+/// The maximum is taken over signed squares of `sin α_ij`, which order the same and need no root per pair. It only
+/// rises, so the first values that are too large decide.
+fn is_behind(ball: &[Neighbor], i: usize, sin_theta_f: f32) -> bool {
     let (mut successor, mut predecessor) = (-2.0f32, -2.0f32);
-    for (j, behind) in ball.iter().enumerate() {
-        let c = ball[i].offset - behind.offset;
-        let product = behind.offset.dot(behind.offset) * c.dot(c);
+    for (j, other) in ball.iter().enumerate() {
+        let c = ball[i].offset - other.offset;
+        let product = other.offset.dot(other.offset) * c.dot(c);
         if i == j || product == 0.0 {
             continue;
         }
-        let along = behind.offset.dot(c);
+        let along = other.offset.dot(c);
         let sin_squared = along * along.abs() / product;
         // An exactly collinear point counts as successor.
-        if ball[i].x * behind.y - ball[i].y * behind.x >= 0.0 {
-            successor = successor.max(sin_squared);
-        } else {
-            predecessor = predecessor.max(sin_squared);
+        let succeeds = ball[i].x * other.y - ball[i].y * other.x >= 0.0;
+        let side = if succeeds { &mut successor } else { &mut predecessor };
+        if sin_squared > *side {
+            *side = sin_squared;
+            let badness =
+                plane_badness(successor, sin_theta_f) + plane_badness(predecessor, sin_theta_f);
+            if badness > WORST_BADNESS {
+                return true;
+            }
         }
     }
-    plane_badness(successor, sin_theta_f) + plane_badness(predecessor, sin_theta_f)
+    false
 }
 
 /// `w_ij` from the signed square of `sin α_ij`; 0 for an empty set, which passes -2.

@@ -46,6 +46,10 @@ impl From<ParamError> for Error {
     }
 }
 
+/// Points of a level that is refined: seven candidates a point are the most that occur in the mean, and their slots
+/// are numbered in 32 bits.
+const LARGEST_LEVEL: usize = (u32::MAX / 7) as usize;
+
 /// Refines a point set.
 ///
 /// # Errors
@@ -70,6 +74,9 @@ pub fn refine_with(
     let mut result = Refined { level_sizes: vec![level.len()], ..Refined::default() };
     for step in 1..=params.levels {
         let points = level.len();
+        if points > LARGEST_LEVEL {
+            return Err(Invalid::TooMany(points).into());
+        }
         let (state, mut report) = run_level(&level, params, order, &mut |stage| {
             progress(Progress { level: step, levels: params.levels, stage, points });
         });

@@ -21,7 +21,7 @@ const PROVENANCE: [&str; 4] = ["level", "parent0", "parent1", "parent2"];
 /// coordinates add [`PointSet::origin`]. The same points give the same bytes.
 ///
 /// # Errors
-/// Points that [`PointSet::validate`] rejects, names that occur twice or that PLY cannot hold, values that are not
+/// Points that [`PointSet::validate_numbers`] rejects, names that occur twice or that PLY cannot hold, values that are not
 /// finite in ASCII, and a file that cannot be written.
 pub fn write(
     path: &Path,
@@ -30,7 +30,10 @@ pub fn write(
     source: &Source,
     encoding: Encoding,
 ) -> Result<(), PlyError> {
-    points.validate().map_err(|invalid| PlyError::Invalid { path: path.into(), invalid })?;
+    // Only that: a refinement may have left the ranges that its input must keep.
+    points
+        .validate_numbers()
+        .map_err(|invalid| PlyError::Invalid { path: path.into(), invalid })?;
     let mut columns = columns(points, source);
     if let Some(provenance) = provenance {
         check_provenance_names(path, &columns)?;
