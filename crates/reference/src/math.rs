@@ -86,7 +86,8 @@ mod tests {
             // Near the positive x axis 0 and 2π are the same direction.
             let error =
                 (found - expected).abs().min(std::f64::consts::TAU - (found - expected).abs());
-            assert!(error < 4e-7, "{angle}: {found} instead of {expected}");
+            // Two roundings of numbers up to 2π, whose steps are 4.8e-7.
+            assert!(error < 7e-7, "{angle}: {found} instead of {expected}");
         }
     }
 

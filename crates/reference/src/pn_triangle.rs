@@ -139,7 +139,8 @@ mod tests {
         let triangle =
             [on_sphere(1.0, 0.1, 0.0), on_sphere(1.0, -0.1, 0.15), on_sphere(1.0, -0.1, -0.15)];
         let x = displaced_center(triangle);
-        assert!((x.length() - 1.0).abs() < 1e-5, "distance {}", x.length() - 1.0);
+        let (flat, curved) = (1.0 - center_of_gravity(triangle).length(), 1.0 - x.length());
+        assert!(curved.abs() < flat / 100.0, "distance {curved}, of the flat triangle {flat}");
         // The printed coefficient 7 turns this normal by a multiple of the bound.
         let normal = center_normal(triangle, 0.2).expect("it has an area");
         let outward = if normal.dot(x) < 0.0 { -normal } else { normal };
