@@ -7,7 +7,7 @@
 @group(0) @binding(4) var<storage, read> candidate_positions: array<vec4<f32>>;
 @group(0) @binding(5) var<storage, read> owners: array<u32>;
 @group(0) @binding(6) var<storage, read> grid: array<u32>;
-/// First entry and size of each point's list. A point stands in it once for each of its candidates that conflict.
+/// First entry and size of each point's list.
 @group(0) @binding(7) var<storage, read_write> conflict_blocks: array<vec2<u32>>;
 @group(0) @binding(8) var<storage, read_write> conflict_entries: array<u32>;
 @group(0) @binding(9) var<storage, read_write> counters: Counters;
@@ -35,7 +35,7 @@ fn conflicts(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
     var size = 0u;
     var walk = ball_walk(own.center, radius);
     for (var y = next_entry(&walk); y != NONE; y = next_entry(&walk)) {
-        size += u32(conflicting(own, y, reach_squared));
+        size += u32(first_conflicting(own, y, reach_squared));
     }
     let first = atomicAdd(&counters.conflicts, size);
     conflict_blocks[p] = vec2(first, 0u);
@@ -46,7 +46,7 @@ fn conflicts(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
     var next = first;
     walk = ball_walk(own.center, radius);
     for (var y = next_entry(&walk); y != NONE; y = next_entry(&walk)) {
-        if conflicting(own, y, reach_squared) {
+        if first_conflicting(own, y, reach_squared) {
             conflict_entries[next] = owners[y];
             next += 1u;
         }
@@ -67,11 +67,8 @@ fn reach_of_conflicts(own: Own, near: f32) -> f32 {
     return reach;
 }
 
-/// Whether candidate y belongs to another point and lies in one of the balls.
+/// Whether candidate y lies in one of the balls.
 fn conflicting(own: Own, y: u32, reach_squared: f32) -> bool {
-    if owners[y] == own.p {
-        return false;
-    }
     let position = candidate_positions[y].xyz;
     let from_center = position - own.center;
     let squared = dot3(from_center, from_center);
@@ -90,4 +87,18 @@ fn conflicting(own: Own, y: u32, reach_squared: f32) -> bool {
         }
     }
     return false;
+}
+
+/// Whether candidate y conflicts and is the first one of its owner that does: so each point is listed once.
+fn first_conflicting(own: Own, y: u32, reach_squared: f32) -> bool {
+    let q = owners[y];
+    if q == own.p || !conflicting(own, y, reach_squared) {
+        return false;
+    }
+    for (var earlier = ring_starts[q]; earlier < y; earlier++) {
+        if candidate_positions[earlier].w > 0.0 && conflicting(own, earlier, reach_squared) {
+            return false;
+        }
+    }
+    return true;
 }

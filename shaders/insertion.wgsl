@@ -1,5 +1,6 @@
 // insertion: completes the new neighbourhood N' of each point of one class (section 5).
-// Twin: crates/reference/src/insertion.rs; the operations on N' are in shared/new_ring.wgsl
+// Twin: crates/reference/src/insertion.rs
+// The operations on N' are in shared/new_ring.wgsl, eq. 11 is in shared/discard.wgsl, the radii in shared/next_radii.wgsl.
 // One invocation per point of the class. dispatch: the class, its first member, its size, number of classes.
 //
 // Only candidates that earlier classes inserted are seen, so it does not matter when the members of one class run.

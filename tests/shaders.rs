@@ -380,7 +380,7 @@ fn constant(file: &str, name: &str) -> u32 {
 fn constants_are_those_of_the_reference() {
     use surfine_reference::{candidates, insertion, pn_triangle};
     let cases = [
-        ("new_ring", "COVER", insertion::COVER.to_bits()),
+        ("next_radii", "COVER", insertion::COVER.to_bits()),
         ("new_ring", "HYSTERESIS", insertion::HYSTERESIS.to_bits()),
         ("new_ring", "SMALLEST_SPLIT", insertion::SMALLEST_SPLIT.to_bits()),
         ("fan_triangle", "WIDEST_GAP", candidates::WIDEST_GAP.to_bits()),

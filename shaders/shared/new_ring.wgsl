@@ -1,12 +1,10 @@
 // The new neighbourhood N' of one point while it is refined. Twin: `Fan` in crates/reference/src/insertion.rs
 //
-// Expects `points`, `candidate_positions`, `candidate_normals`, `next_radii` and `arena`.
+// Expects `points`, `candidate_positions`, `candidate_normals` and `arena`.
 
 /// Whether the simplifications of section 7 are made.
 override simplified: bool = false;
 
-/// Radii exceed the distances they must cover by this factor, so that rounding can't lose the farthest ring.
-const COVER: f32 = 1.02;
 /// A gap or an angle must be wider by this factor to be preferred to an earlier one: regular grids tie.
 const HYSTERESIS: f32 = 1.00001;
 /// A candidate nearer than this to an end of its gap, radians, does not split it.
@@ -178,56 +176,4 @@ fn widest_gap() -> u32 {
         }
     }
     return widest;
-}
-
-struct Closest {
-    slot: u32,
-    squared: f32,
-}
-
-/// The new point of Y or N' whose discard sphere (eq. 11) holds the candidate: the closest of them, or NONE.
-fn discarded_by(slot: u32) -> u32 {
-    var closest = Closest(NONE, 0.0);
-    for (var i = 0u; i < ring.outer_size; i++) {
-        try_discard(&closest, slot, arena[ring.outer + i]);
-    }
-    for (var i = 0u; i < ring.size; i++) {
-        try_discard(&closest, slot, slot_at(i));
-    }
-    return closest.slot;
-}
-
-fn try_discard(closest: ptr<function, Closest>, slot: u32, h: u32) {
-    let d = candidate_positions[slot].xyz - candidate_positions[h].xyz;
-    let d2 = dot3(d, d);
-    let sphere = params.lambda2 * candidate_positions[h].w;
-    let nearer = (*closest).slot == NONE || d2 < (*closest).squared || (d2 == (*closest).squared && h < (*closest).slot);
-    if d2 < sphere * sphere && nearer {
-        *closest = Closest(h, d2);
-    }
-}
-
-/// Makes the next radius of a slot at least this.
-fn cover(slot: u32, distance: vec3<f32>) {
-    atomicMax(&next_radii[params.points + slot], bitcast<u32>(COVER * sqrt(dot3(distance, distance))));
-}
-
-/// The centre's radius covers N', those of N' cover the centre and their neighbours there. A point without new
-/// neighbours keeps its radius.
-fn store_radii(p: u32) {
-    var farthest = 0.0;
-    for (var i = 0u; i < ring.size; i++) {
-        let slot = slot_at(i);
-        let d = offset_of(slot);
-        farthest = max(farthest, dot3(d, d));
-        cover(slot, d);
-        if directed_gap(i) < PI {
-            let next = slot_at(next_member(i));
-            let side = offset_of(next) - d;
-            cover(slot, side);
-            cover(next, side);
-        }
-    }
-    let radius = select(COVER * sqrt(farthest), ring.radius, ring.size == 0u);
-    atomicStore(&next_radii[p], bitcast<u32>(radius));
 }

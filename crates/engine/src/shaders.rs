@@ -47,7 +47,17 @@ pub const SHADERS: &[Shader] = &[
     shader!("conflicts_mirror", "cut_loops"),
     shader!("coloring", "cut_loops"),
     shader!("class_count"),
-    shader!("insertion", "cells", "ball_walk", "math", "pn_triangle", "new_ring", "cut_loops"),
+    shader!(
+        "insertion",
+        "cells",
+        "ball_walk",
+        "math",
+        "pn_triangle",
+        "new_ring",
+        "discard",
+        "next_radii",
+        "cut_loops"
+    ),
     shader!("commit_count"),
     shader!("commit", "math", "pn_triangle", "fan_triangle"),
 ];

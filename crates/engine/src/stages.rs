@@ -282,7 +282,7 @@ impl Step<'_> {
         self.buffers.conflict_blocks.reserve(self.gpu, 2 * WORD * n)?;
         self.buffers.mirror_heads.reserve(self.gpu, WORD * n)?;
         let entries = u64::from(self.sizing.entries);
-        self.buffers.conflict_entries.reserve(self.gpu, WORD * entries * n)?;
+        self.buffers.conflict_entries.reserve(self.gpu, WORD * entries / 2 * n)?;
         self.buffers.mirror_links.reserve(self.gpu, 2 * WORD * entries / 12 * n)?;
         loop {
             self.params.conflict_entries = words_of(&self.buffers.conflict_entries);

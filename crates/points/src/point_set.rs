@@ -182,8 +182,11 @@ impl PointSet {
     /// # Errors
     /// The first defect, with the index of its point.
     pub fn validate(&self) -> Result<(), Invalid> {
-        self.validate_numbers()?;
-        (0..self.len()).try_for_each(|point| self.validate_ranges(point))
+        self.validate_lengths()?;
+        (0..self.len()).try_for_each(|point| {
+            self.validate_finite(point)?;
+            self.validate_ranges(point)
+        })
     }
 
     /// Checks the lengths of the columns, and that positions, normals and radii are finite: what a refinement keeps,
@@ -192,6 +195,11 @@ impl PointSet {
     /// # Errors
     /// The first defect.
     pub fn validate_numbers(&self) -> Result<(), Invalid> {
+        self.validate_lengths()?;
+        (0..self.len()).try_for_each(|point| self.validate_finite(point))
+    }
+
+    fn validate_lengths(&self) -> Result<(), Invalid> {
         let points = self.len();
         if points > i32::MAX as usize {
             return Err(Invalid::TooMany(points));
@@ -203,7 +211,7 @@ impl PointSet {
                 return Err(Invalid::Length { column: column.into(), found, points });
             }
         }
-        (0..points).try_for_each(|point| self.validate_finite(point))
+        Ok(())
     }
 
     fn validate_finite(&self, point: usize) -> Result<(), Invalid> {
