@@ -185,7 +185,9 @@ fn bench(criterion: &mut Criterion, is_test: bool) {
 }
 
 fn main() {
-    let is_test = std::env::args().any(|argument| argument == "--test");
+    // `cargo test` runs it without `--bench`, `cargo bench -- --test` with both.
+    let given = |flag: &str| std::env::args().any(|argument| argument == flag);
+    let is_test = given("--test") || !given("--bench");
     let mut criterion = Criterion::default().configure_from_args();
     bench(&mut criterion, is_test);
     criterion.final_summary();
