@@ -20,6 +20,13 @@ pub(crate) struct Computed {
     pub(crate) fallback: Option<String>,
 }
 
+impl Computed {
+    /// What a refinement that began then gave, up to now; the caller knows of setup and fallback.
+    fn new(refined: Refined, backend: Backend, begin: Instant) -> Self {
+        Self { refined, backend, setup: Duration::ZERO, refine: begin.elapsed(), fallback: None }
+    }
+}
+
 /// What a refinement was computed with.
 pub(crate) enum Backend {
     Gpu {
@@ -89,13 +96,7 @@ fn on_cpu(points: &PointSet, params: &RefineParams, watch: &Watch) -> Result<Com
     let refined =
         surfine_reference::refine_with(points, params, Order::Together, &mut |at| watch.at(at))?;
     let backend = Backend::Cpu { threads: rayon::current_num_threads() };
-    Ok(Computed {
-        refined,
-        backend,
-        setup: Duration::ZERO,
-        refine: begin.elapsed(),
-        fallback: None,
-    })
+    Ok(Computed::new(refined, backend, begin))
 }
 
 fn on_gpu(
@@ -110,11 +111,5 @@ fn on_gpu(
     let begin = Instant::now();
     let refined = refiner.refine_with(points, params, &mut |at| watch.at(at))?;
     let backend = Backend::Gpu { adapter, mode, software };
-    Ok(Computed {
-        refined,
-        backend,
-        setup: Duration::ZERO,
-        refine: begin.elapsed(),
-        fallback: None,
-    })
+    Ok(Computed::new(refined, backend, begin))
 }
