@@ -4,6 +4,7 @@
 //! algorithm nor a GPU.
 
 mod grid;
+mod model;
 mod params;
 pub mod ply;
 mod point_set;
@@ -13,6 +14,7 @@ pub mod shapes;
 pub use glam::Vec3;
 pub use glam::{DVec3, UVec3};
 pub use grid::{Grid, GridShape};
+pub use model::Model;
 pub use params::{Neighborhood, ParamError, RefineParams};
 pub use point_set::{Attribute, Interpolation, Invalid, PointSet, Values};
 pub use refined::{LevelReport, Progress, Refined};

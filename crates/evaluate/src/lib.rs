@@ -1,0 +1,1 @@
+//! Measures how well a cloud of oriented points shows a surface.

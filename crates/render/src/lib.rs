@@ -1,0 +1,1 @@
+//! Draws clouds of oriented points as splats.
