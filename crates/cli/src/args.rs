@@ -1,5 +1,11 @@
 //! The command line.
 
+mod evaluate;
+mod render;
+
+pub(crate) use evaluate::EvaluateArgs;
+pub(crate) use render::{ColorChoice, RenderArgs};
+
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
@@ -11,6 +17,7 @@ const EXAMPLES: &str = "\
 Examples:
   surfine sample torus -n 20000 -o torus.ply    make a cloud to try
   surfine refine torus.ply -o fine.ply          refine it twice: about 9 times the points
+  surfine render torus.ply fine.ply -o both.png look at both, side by side
   surfine adapters                              show what the GPU backend could use
   surfine help refine                           show all options of a command
 
@@ -60,6 +67,10 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Refine a cloud: keep its points, insert new ones on the smooth surface through them
     Refine(RefineArgs),
+    /// Draw clouds as splats into a PNG file
+    Render(RenderArgs),
+    /// Measure how well a cloud shows a true surface
+    Evaluate(EvaluateArgs),
     /// List the GPU adapters of this machine
     Adapters(AdaptersArgs),
     /// Make a cloud on a simple surface

@@ -113,3 +113,9 @@ fn on_gpu(
     let backend = Backend::Gpu { adapter, mode, software };
     Ok(Computed::new(refined, backend, begin))
 }
+
+/// Whether an adapter is taken where the user leaves the choice: a hardware one, or one that `WGPU_ADAPTER_NAME` names.
+pub(crate) fn is_preferred(adapter: &wgpu::Adapter) -> bool {
+    let named = std::env::var("WGPU_ADAPTER_NAME").is_ok_and(|name| !name.is_empty());
+    named || !is_software(&adapter.get_info())
+}

@@ -3,8 +3,8 @@
 use crate::Failure;
 use std::fs;
 use std::io::ErrorKind;
-use std::path::Path;
-use surfine_points::ply::{Encoding, PlyError};
+use std::path::{Path, PathBuf};
+use surfine_points::ply::{self, Encoding, PlyError};
 
 pub(crate) fn encoding(ascii: bool) -> Encoding {
     if ascii { Encoding::Ascii } else { Encoding::Binary }
@@ -37,6 +37,21 @@ pub(crate) fn check_output(output: &Path) -> Result<(), Failure> {
     // Permissions say too little: try. This file has no name, so that nothing can stay behind.
     tempfile::tempfile_in(folder).map_err(failed)?;
     Ok(())
+}
+
+/// Refuses a picture that could not be written at the end, or would take the place of an input.
+pub(crate) fn check_picture<'a>(
+    output: &Path,
+    inputs: impl IntoIterator<Item = &'a PathBuf>,
+) -> Result<(), Failure> {
+    let refused = |why: &str| Err(Failure(format!("{}: {why}", output.display())));
+    if inputs.into_iter().any(|input| ply::same_file(input, output)) {
+        return refused("is an input too: give the output another name");
+    }
+    if output.extension().is_none_or(|e| !e.eq_ignore_ascii_case("png")) {
+        return refused("pictures are PNG: let the name end in .png");
+    }
+    check_output(output)
 }
 
 /// Whether the path can't name a file: it is empty, or ends with `..` or a slash.

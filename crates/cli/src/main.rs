@@ -3,8 +3,11 @@
 mod adapters;
 mod args;
 mod backend;
+mod evaluate;
 mod files;
+mod painter;
 mod refine;
+mod render;
 mod report;
 mod sample;
 mod watch;
@@ -18,6 +21,8 @@ fn main() -> ExitCode {
     let cli = Cli::from_command_line();
     let result = match &cli.command {
         Command::Refine(args) => refine::run(args),
+        Command::Render(args) => render::run(args),
+        Command::Evaluate(args) => evaluate::run(args),
         Command::Adapters(args) => adapters::run(args),
         Command::Sample(args) => sample::run(args),
     };

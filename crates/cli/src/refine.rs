@@ -12,7 +12,7 @@ use surfine_points::{PointSet, Values};
 pub(crate) fn run(args: &RefineArgs) -> Result<(), Failure> {
     check_paths(args)?;
     backend::start_threads(args.threads)?;
-    let report = refine(args, &Watch::new(args))?;
+    let report = refine(args, &Watch::new(args.quiet || args.json))?;
     if args.json {
         print(&format!("{}\n", serde_json::to_string_pretty(&report)?))
     } else if args.quiet {

@@ -1,6 +1,5 @@
 //! The line on standard error that shows where a long computation stands.
 
-use crate::args::RefineArgs;
 use crate::warn;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
@@ -14,8 +13,8 @@ pub(crate) struct Watch {
 
 impl Watch {
     /// Shows nothing where standard error is no terminal, or where the user wants silence.
-    pub(crate) fn new(args: &RefineArgs) -> Self {
-        if args.quiet || args.json || !std::io::stderr().is_terminal() {
+    pub(crate) fn new(quiet: bool) -> Self {
+        if quiet || !std::io::stderr().is_terminal() {
             return Self { bar: ProgressBar::hidden() };
         }
         let bar = ProgressBar::new_spinner();

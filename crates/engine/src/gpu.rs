@@ -1,6 +1,6 @@
 //! Adapters and devices.
 
-use crate::Error;
+use crate::{Error, buffers};
 use std::time::Duration;
 
 /// How long the host waits for the device before it gives up: a hang must not be for ever.
@@ -122,7 +122,10 @@ impl Gpu {
     }
 
     /// Runs `work` and returns the device's own complaint, if there was one, rather than what followed from it.
-    pub(crate) fn guarded<T>(&self, work: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
+    ///
+    /// # Errors
+    /// What the device or `work` complains of.
+    pub fn guarded<T>(&self, work: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
         let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
@@ -135,6 +138,14 @@ impl Gpu {
             Some(e) => Err(self.error(&e)),
             None => result,
         }
+    }
+
+    /// Reads the first `bytes` bytes, a multiple of 4, of a buffer that is a copy source.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn read(&self, buffer: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8>, Error> {
+        buffers::read(self, buffer, bytes)
     }
 
     /// Waits for everything that was submitted.

@@ -14,7 +14,7 @@ pub mod shapes;
 pub use glam::Vec3;
 pub use glam::{DVec3, UVec3};
 pub use grid::{Grid, GridShape};
-pub use model::Model;
+pub use model::{Completed, Model};
 pub use params::{Neighborhood, ParamError, RefineParams};
 pub use point_set::{Attribute, Interpolation, Invalid, PointSet, Values};
 pub use refined::{LevelReport, Progress, Refined};

@@ -591,6 +591,24 @@ fn hostile_files_are_refused_in_one_line() {
 }
 
 #[test]
+fn hostile_files_are_no_models_either() {
+    let folder = Folder::new();
+    // What only the refinement minds.
+    let fine = ["zero normal", "zero radius", "no normals", "no radius"];
+    for (case, bytes, words) in hostile() {
+        match ply::read_model(&folder.file(bytes)) {
+            Ok(_) => assert!(fine.contains(&case), "{case}"),
+            Err(error) => {
+                assert!(!fine.contains(&case), "{case}: {error}");
+                let text = error.to_string();
+                assert!(text.contains("input.ply: ") && text.contains(words), "{case}: {text}");
+                assert!(!text.contains(char::is_control) && text.len() < 700, "{case}: {text}");
+            }
+        }
+    }
+}
+
+#[test]
 fn what_is_no_file_is_refused() {
     let folder = Folder::new();
     let missing = ply::read(&folder.path("missing.ply")).unwrap_err().to_string();
@@ -699,9 +717,47 @@ fn damaged_files_never_panic() {
         match folder.read(&bytes) {
             Ok((points, source)) => {
                 good += 1;
+                assert_eq!(
+                    ply::read_model(&folder.path("input.ply")).unwrap().0.len(),
+                    points.len()
+                );
                 // What can be read can be written, and comes back.
                 let again = folder.read(folder.write(&points, &source, Encoding::Binary)).unwrap();
                 assert_same_bits(&points, &again.0);
+            }
+            Err(error) => {
+                bad += 1;
+                let text = error.to_string();
+                assert!(text.contains("input.ply") && !text.contains(char::is_control), "{text:?}");
+            }
+        }
+    }
+    assert!(good > 100 && bad > 1000, "{good} good, {bad} bad");
+}
+
+#[test]
+fn damaged_meshes_never_panic() {
+    let folder = Folder::new();
+    let mut random = fastrand::Rng::with_seed(11);
+    let header = "element vertex 4\nproperty float x\nproperty float y\nproperty double z\nelement face 3\n\
+        property list uchar short vertex_index\n";
+    let rows = "0 0 0\n1 0 0\n1 1 0.5\n0 1 0\n3 0 1 2\n4 3 2 1 0\n3 0 2 3\n";
+    let ascii = format!("ply\nformat ascii 1.0\n{header}end_header\n{rows}").into_bytes();
+    let corners =
+        [&[3, 0, 0, 1, 0, 2, 0][..], &[4, 3, 0, 2, 0, 1, 0, 0, 0], &[3, 0, 0, 2, 0, 3, 0]];
+    let body = [vec![0; 64], corners.concat()].concat();
+    let seeds = [ascii, binary(header, &body)];
+    let (mut good, mut bad) = (0, 0);
+    for round in 0..4000 {
+        let mut bytes = seeds[round % seeds.len()].clone();
+        for _ in 0..random.usize(1..4) {
+            damage(&mut bytes, &mut random);
+        }
+        match ply::read_model(&folder.file(&bytes)) {
+            Ok((model, _)) => {
+                good += 1;
+                assert!(model.triangles.iter().flatten().all(|&c| (c as usize) < model.len()));
+                model.to_points().0.validate_numbers().unwrap();
             }
             Err(error) => {
                 bad += 1;

@@ -1,1 +1,45 @@
-//! Draws clouds of oriented points as splats.
+//! Draws clouds of oriented points as splats: each point a disc on its tangent plane, overlapping discs blended, light
+//! computed from the blended normals (deferred splatting after Botsch, Hornung, Zwicker and Kobbelt 2005).
+//!
+//! A picture takes three passes. *Visibility* draws the discs into a depth buffer, pushed back by part of their radius.
+//! *Attributes* adds up colours and normals of all discs that are not behind that depth, weighted so that they fade
+//! towards their outline. *Resolve* divides by the weights, lights each subpixel and averages.
+//!
+//! [`Renderer`] does so on the GPU, from points of the host or straight from the engine's device buffers
+//! ([`DeviceSplats::from`]); [`cpu::draw`] draws the same picture without one.
+//!
+//! ```no_run
+//! use surfine_render::{Camera, Renderer, Size, Style, View};
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let points = surfine::PointSet::default();
+//! let mut refiner = surfine::Refiner::new(None)?;
+//! let refined = refiner.refine_on_device(&points, &surfine::RefineParams::default(), &mut |_| ())?;
+//! let size = Size { width: 800, height: 600 };
+//! let seen = points.positions.iter().copied();
+//! let camera = Camera::look(seen, View::Iso.direction(), View::Iso.up(), size.aspect());
+//! let renderer = Renderer::new(refiner.gpu())?;
+//! let picture = renderer.draw(&(&refined).into(), &camera, &Style::default(), size)?;
+//! picture.write_png("fine.png".as_ref())?;
+//! # Ok(())
+//! # }
+//! ```
+
+mod camera;
+mod caption;
+pub mod cpu;
+mod creases;
+mod error;
+mod picture;
+mod renderer;
+mod shading;
+mod splats;
+mod style;
+mod view;
+
+pub use camera::{Camera, UnknownView, View};
+pub use caption::Caption;
+pub use error::Error;
+pub use picture::{Picture, Size, write_animation};
+pub use renderer::{DeviceSplats, Renderer, SHADERS};
+pub use splats::Splats;
+pub use style::{Coloring, Style, ramp};

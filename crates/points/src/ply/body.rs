@@ -1,6 +1,7 @@
 //! The body: entries from the parser, with errors that name the place.
 
 use super::error::quoted;
+use super::file::check_size;
 use super::header::Header;
 use super::scalar::{self, Scalar};
 use super::{Encoding, PlyError};
@@ -29,26 +30,47 @@ pub(super) struct Body<'a> {
 
 impl<'a> Body<'a> {
     /// The body behind the header that `reader` has just read; `size` is its length.
-    pub(super) fn new(path: &'a Path, reader: BufReader<File>, header: &Header, size: u64) -> Self {
+    ///
+    /// # Errors
+    /// A body too short for the counts in the header.
+    pub(super) fn new(
+        path: &'a Path,
+        reader: BufReader<File>,
+        header: &Header,
+        size: u64,
+    ) -> Result<Self, PlyError> {
+        check_size(path, header, size)?;
         let (encoding, line) = (header.encoding, header.lines);
-        Self { path, reader, encoding, size, line, text: Vec::new() }
+        Ok(Self { path, reader, encoding, size, line, text: Vec::new() })
     }
 
     /// Reads an element into one column for each scalar property.
     pub(super) fn read_columns(&mut self, element: &ElementDef) -> Result<Vec<Values>, PlyError> {
         let mut columns: Vec<Values> =
             scalars(element).map(|(_, kind)| scalar::column(kind, element.count)).collect();
-        let parser = Parser::<Row>::new();
-        for index in 0..element.count {
-            let row = self.read_entry(&parser, element, index)?;
+        self.read_entries(element, |row: Row| {
             columns.iter_mut().zip(row.values()).for_each(|(c, v)| scalar::push(c, v));
-        }
+            Ok(())
+        })?;
         Ok(columns)
     }
 
     pub(super) fn skip(&mut self, element: &ElementDef) -> Result<(), PlyError> {
-        let parser = Parser::<Skipped>::new();
-        (0..element.count).try_for_each(|i| self.read_entry(&parser, element, i).map(|_| ()))
+        self.read_entries(element, |_: Skipped| Ok(()))
+    }
+
+    /// Hands the entries of an element to `take`, which says what is wrong with one, and the remedy.
+    pub(super) fn read_entries<E: PropertyAccess>(
+        &mut self,
+        element: &ElementDef,
+        mut take: impl FnMut(E) -> Result<(), String>,
+    ) -> Result<(), PlyError> {
+        let parser = Parser::<E>::new();
+        for index in 0..element.count {
+            let entry = self.read_entry(&parser, element, index)?;
+            take(entry).map_err(|problem| self.entry_error(element, index, problem))?;
+        }
+        Ok(())
     }
 
     fn read_entry<E: PropertyAccess>(

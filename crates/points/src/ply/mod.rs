@@ -2,18 +2,23 @@
 //!
 //! [`read()`] takes the `vertex` element of an ASCII or binary file and [`write()`] gives one back, with the properties of
 //! the input in their order and type. What a [`PointSet`](crate::PointSet) has no room for travels in a [`Source`].
+//! [`read_model()`] takes any cloud or mesh, to be looked at.
 //!
 //! The header is scanned here, under limits, and its counts are checked against the size of the file. Only then does
 //! `ply-rs-bw` read the body, one entry at a time, so hostile files cost no more than their own size.
 
 mod body;
 mod error;
+mod faces;
+mod file;
 mod header;
+mod model;
 mod read;
 mod scalar;
 mod write;
 
 pub use error::PlyError;
+pub use model::read_model;
 pub use read::read;
 pub use write::write;
 

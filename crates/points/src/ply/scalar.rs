@@ -1,6 +1,7 @@
 //! Single values and columns of them.
 
 use crate::Values;
+use glam::Vec3;
 use ply_rs_bw::ply::ScalarType;
 use std::io::{self, Write};
 
@@ -101,6 +102,20 @@ pub(super) fn to_f64(column: &Values) -> Vec<f64> {
     each!(Values, column, column => widened(column))
 }
 
+/// A column as 32-bit floats relative to `origin`.
+pub(super) fn narrowed(values: &Values, origin: f64) -> Vec<f32> {
+    match values {
+        // Their origin is 0; a copy keeps even the bits of a NaN.
+        Values::F32(values) => values.clone(),
+        values => to_f64(values).into_iter().map(|v| narrow(v - origin)).collect(),
+    }
+}
+
+/// Vectors of three columns of components.
+pub(super) fn vectors([x, y, z]: [Vec<f32>; 3]) -> Vec<Vec3> {
+    x.into_iter().zip(y).zip(z).map(|((x, y), z)| Vec3::new(x, y, z)).collect()
+}
+
 /// The nearest 32-bit float; infinite where there is none.
 pub(super) fn narrow(value: f64) -> f32 {
     value as f32
@@ -116,6 +131,11 @@ pub(super) fn find_not_finite(column: &Values) -> Option<usize> {
 }
 
 impl Scalar {
+    /// The value without its fraction.
+    pub(super) fn to_integer(self) -> i64 {
+        each!(Self, self, value => value as i64)
+    }
+
     /// Writes the value; in ASCII without a separator.
     pub(super) fn write(self, out: &mut impl Write, encoding: Encoding) -> io::Result<()> {
         match encoding {

@@ -5,6 +5,7 @@
 //! of their orthogonal projection with their distance kept, so that a curved surface doesn't bring them closer.
 
 use glam::{DVec2, DVec3, Vec3};
+use rayon::prelude::*;
 
 use super::RADIUS_FACTOR;
 use crate::{Grid, GridShape};
@@ -36,6 +37,7 @@ pub fn natural_radii(positions: &[Vec3], normals: &[Vec3]) -> Vec<f32> {
     assert!(positions.len() <= normals.len(), "give one normal a position");
     let cloud = Cloud::new(positions, normals);
     (0..positions.len())
+        .into_par_iter()
         .map(|i| {
             let reach = cloud.farthest_natural(i).or_else(|| cloud.nearest_place(i));
             let radius = reach.map_or(1.0, |distance| RADIUS_FACTOR * distance);

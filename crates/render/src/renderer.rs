@@ -1,0 +1,418 @@
+//! Pictures on the GPU.
+
+use crate::cpu::PUSH;
+use crate::splats::Extra;
+use crate::style::packed_ramp;
+use crate::view::Uniform;
+use crate::{Camera, Error, Picture, Size, Splats, Style};
+use surfine::records::Point;
+use surfine::{Gpu, GpuRefined, wgpu};
+
+/// The texts of the shaders by name: the passes over discs, and the pass over pixels.
+pub const SHADERS: [(&str, &str); 2] = [
+    (
+        "splat",
+        concat!(
+            include_str!("../../../shaders/render/splat.wgsl"),
+            "\n",
+            include_str!("../../../shaders/render/view.wgsl")
+        ),
+    ),
+    (
+        "resolve",
+        concat!(
+            include_str!("../../../shaders/render/resolve.wgsl"),
+            "\n",
+            include_str!("../../../shaders/render/view.wgsl")
+        ),
+    ),
+];
+
+const SUMS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+const PICTURE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// Compiled passes; keep it and draw many pictures.
+#[derive(Debug)]
+pub struct Renderer {
+    gpu: Gpu,
+    fronts: wgpu::RenderPipeline,
+    backs: wgpu::RenderPipeline,
+    attributes: wgpu::RenderPipeline,
+    resolve: wgpu::RenderPipeline,
+    ramp: wgpu::Buffer,
+}
+
+/// Points in device memory, ready to be drawn.
+#[derive(Clone, Debug, Default)]
+pub struct DeviceSplats {
+    parts: Vec<Part>,
+}
+
+/// As many points as one buffer holds.
+#[derive(Clone, Debug)]
+struct Part {
+    points: wgpu::Buffer,
+    extras: Option<wgpu::Buffer>,
+    count: u32,
+}
+
+impl From<&GpuRefined> for DeviceSplats {
+    /// The engine's own buffer: nothing is copied.
+    fn from(refined: &GpuRefined) -> Self {
+        let count = refined.len() as u32;
+        let part = Part { points: refined.points.clone(), extras: None, count };
+        Self { parts: if count > 0 { vec![part] } else { Vec::new() } }
+    }
+}
+
+impl Renderer {
+    /// Compiles the passes for a device.
+    ///
+    /// # Errors
+    /// The driver refuses them.
+    pub fn new(gpu: &Gpu) -> Result<Self, Error> {
+        let [splat, resolve] = SHADERS.map(|(name, text)| {
+            gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(name),
+                source: wgpu::ShaderSource::Wgsl(text.into()),
+            })
+        });
+        let made = gpu.guarded(|| {
+            Ok(Self {
+                fronts: splat_pipeline(gpu, &splat, ["front", "visibility"], &[]),
+                backs: splat_pipeline(gpu, &splat, ["back", "visibility"], &[]),
+                attributes: splat_pipeline(gpu, &splat, ["either", "attributes"], &sums_targets()),
+                resolve: resolve_pipeline(gpu, &resolve),
+                ramp: buffer(gpu, "ramp", &packed_ramp(), wgpu::BufferUsages::STORAGE),
+                gpu: gpu.clone(),
+            })
+        });
+        Ok(made?)
+    }
+
+    /// Copies points to the device.
+    ///
+    /// # Errors
+    /// The device has no room for them.
+    pub fn upload(&self, splats: &Splats) -> Result<DeviceSplats, Error> {
+        let most = (self.gpu.largest_binding() / size_of::<Point>() as u64) as usize;
+        let usage = wgpu::BufferUsages::STORAGE;
+        let parts = self.gpu.guarded(|| {
+            let chunks = splats.points.chunks(most).enumerate();
+            Ok(chunks
+                .map(|(i, points)| {
+                    let extras = splats.extras.chunks(most).nth(i);
+                    Part {
+                        points: buffer(&self.gpu, "points", points, usage),
+                        extras: extras.map(|extras| buffer(&self.gpu, "extras", extras, usage)),
+                        count: points.len() as u32,
+                    }
+                })
+                .collect())
+        });
+        Ok(DeviceSplats { parts: parts? })
+    }
+
+    /// Draws points and reads the picture back.
+    ///
+    /// # Errors
+    /// The picture has no pixels or more than the device allows, or the device fails.
+    pub fn draw(
+        &self,
+        splats: &DeviceSplats,
+        camera: &Camera,
+        style: &Style,
+        size: Size,
+    ) -> Result<Picture, Error> {
+        let texture = self.draw_on_device(splats, camera, style, size)?;
+        Ok(self.gpu.guarded(|| self.read_back(&texture, size))?)
+    }
+
+    /// Draws points and leaves the picture on the device: a texture of format `Rgba8Unorm` that holds sRGB-encoded
+    /// colours, usable as copy source and as texture binding.
+    ///
+    /// # Errors
+    /// As [`Renderer::draw`].
+    pub fn draw_on_device(
+        &self,
+        splats: &DeviceSplats,
+        camera: &Camera,
+        style: &Style,
+        size: Size,
+    ) -> Result<wgpu::Texture, Error> {
+        let limit = self.gpu.device.limits().max_texture_dimension_2d;
+        size.check(style.supersampling, limit)?;
+        let view = Uniform::new(camera, style, size);
+        let submitted = self.gpu.guarded(|| {
+            let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+            let picture = self.record(&mut encoder, splats, &view, size);
+            self.gpu.queue.submit([encoder.finish()]);
+            Ok(picture)
+        });
+        Ok(submitted?)
+    }
+
+    fn record(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        splats: &DeviceSplats,
+        view: &Uniform,
+        size: Size,
+    ) -> wgpu::Texture {
+        let side = view.supersampling;
+        let subpixels = Size { width: size.width * side, height: size.height * side };
+        let target = |label, format, size| texture(&self.gpu, label, format, size);
+        let (fronts, depth, colors, normals, picture) = (
+            target("fronts", DEPTH, subpixels),
+            target("depth", DEPTH, subpixels),
+            target("colors", SUMS, subpixels),
+            target("normals", SUMS, subpixels),
+            target("picture", PICTURE, size),
+        );
+        let [front, nearest, colors, normals, lit] = [&fronts, &depth, &colors, &normals, &picture]
+            .map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
+        let uniform = buffer(&self.gpu, "view", &[*view], wgpu::BufferUsages::UNIFORM);
+        let shared = [
+            uniform.as_entire_binding(),
+            self.ramp.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&front),
+        ];
+
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("visibility of fronts"),
+            depth_stencil_attachment: Some(depth_attachment(&front, wgpu::LoadOp::Clear(0.0))),
+            ..Default::default()
+        });
+        self.draw_discs(&mut pass, &self.fronts, splats, &shared[..2]);
+        drop(pass);
+        encoder.copy_texture_to_texture(
+            fronts.as_image_copy(),
+            depth.as_image_copy(),
+            depth.size(),
+        );
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("visibility of backs"),
+            depth_stencil_attachment: Some(depth_attachment(&nearest, wgpu::LoadOp::Load)),
+            ..Default::default()
+        });
+        self.draw_discs(&mut pass, &self.backs, splats, &shared);
+        drop(pass);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("attributes"),
+            color_attachments: &[color_attachment(&colors), color_attachment(&normals)],
+            depth_stencil_attachment: Some(depth_attachment(&nearest, wgpu::LoadOp::Load)),
+            ..Default::default()
+        });
+        self.draw_discs(&mut pass, &self.attributes, splats, &shared);
+        drop(pass);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("resolve"),
+            color_attachments: &[color_attachment(&lit)],
+            ..Default::default()
+        });
+        let textures = [&colors, &normals].map(wgpu::BindingResource::TextureView);
+        pass.set_pipeline(&self.resolve);
+        pass.set_bind_group(0, &self.bind(&self.resolve, 0, &shared[..1]), &[]);
+        pass.set_bind_group(1, &self.bind(&self.resolve, 1, &textures), &[]);
+        pass.draw(0..3, 0..1);
+        drop(pass);
+        picture
+    }
+
+    fn draw_discs(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        pipeline: &wgpu::RenderPipeline,
+        splats: &DeviceSplats,
+        shared: &[wgpu::BindingResource<'_>],
+    ) {
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, &self.bind(pipeline, 0, shared), &[]);
+        let none = [Extra::default()];
+        let none = buffer(&self.gpu, "no extras", &none, wgpu::BufferUsages::STORAGE);
+        for part in &splats.parts {
+            let buffers = [&part.points, part.extras.as_ref().unwrap_or(&none)];
+            let buffers = buffers.map(wgpu::Buffer::as_entire_binding);
+            pass.set_bind_group(1, &self.bind(pipeline, 1, &buffers), &[]);
+            pass.draw(0..4, 0..part.count);
+        }
+    }
+
+    /// Binds resources to the bindings of a group, from 0 on.
+    fn bind(
+        &self,
+        pipeline: &wgpu::RenderPipeline,
+        group: u32,
+        resources: &[wgpu::BindingResource<'_>],
+    ) -> wgpu::BindGroup {
+        let numbered = (0..).zip(resources.iter().cloned());
+        let entries =
+            numbered.map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource });
+        self.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &pipeline.get_bind_group_layout(group),
+            entries: &entries.collect::<Vec<_>>(),
+        })
+    }
+
+    fn read_back(&self, texture: &wgpu::Texture, size: Size) -> Result<Picture, surfine::Error> {
+        let row = 4 * size.width;
+        let stride = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let bytes = u64::from(stride) * u64::from(size.height);
+        let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
+        let staging = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("pixels"),
+            size: bytes,
+            usage,
+            mapped_at_creation: false,
+        });
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(stride),
+            rows_per_image: None,
+        };
+        encoder.copy_texture_to_buffer(
+            texture.as_image_copy(),
+            wgpu::TexelCopyBufferInfo { buffer: &staging, layout },
+            texture.size(),
+        );
+        self.gpu.queue.submit([encoder.finish()]);
+        let bytes = self.gpu.read(&staging, bytes)?;
+        let rows = bytes.chunks_exact(stride as usize);
+        let pixels = rows.flat_map(|bytes| bytes[..row as usize].as_chunks().0).copied().collect();
+        Ok(Picture { size, pixels })
+    }
+}
+
+fn buffer<T: bytemuck::NoUninit>(
+    gpu: &Gpu,
+    label: &str,
+    data: &[T],
+    usage: wgpu::BufferUsages,
+) -> wgpu::Buffer {
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: size_of_val(data) as u64,
+        usage: usage | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(data));
+    buffer
+}
+
+fn texture(gpu: &Gpu, label: &str, format: wgpu::TextureFormat, size: Size) -> wgpu::Texture {
+    let mut usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+    if format != SUMS {
+        usage |= wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST;
+    }
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: size.width, height: size.height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    })
+}
+
+fn depth_attachment(
+    view: &wgpu::TextureView,
+    load: wgpu::LoadOp<f32>,
+) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    let depth_ops = Some(wgpu::Operations { load, store: wgpu::StoreOp::Store });
+    wgpu::RenderPassDepthStencilAttachment { view, depth_ops, stencil_ops: None }
+}
+
+fn color_attachment(view: &wgpu::TextureView) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+    let ops = wgpu::Operations {
+        load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+        store: wgpu::StoreOp::Store,
+    };
+    Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
+}
+
+/// Both sums add up.
+fn sums_targets() -> [Option<wgpu::ColorTargetState>; 2] {
+    let add = wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::One,
+        dst_factor: wgpu::BlendFactor::One,
+        operation: wgpu::BlendOperation::Add,
+    };
+    let target = wgpu::ColorTargetState {
+        format: SUMS,
+        blend: Some(wgpu::BlendState { color: add, alpha: add }),
+        write_mask: wgpu::ColorWrites::ALL,
+    };
+    [Some(target.clone()), Some(target)]
+}
+
+/// The pass over discs with that vertex and that fragment shader: without targets it writes depth, with targets it tests against it.
+fn splat_pipeline(
+    gpu: &Gpu,
+    module: &wgpu::ShaderModule,
+    [vertex, fragment]: [&str; 2],
+    targets: &[Option<wgpu::ColorTargetState>],
+) -> wgpu::RenderPipeline {
+    let first = targets.is_empty();
+    let constants = [("push", if first { f64::from(PUSH) } else { 0.0 })];
+    let options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(fragment),
+        layout: None,
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some(vertex),
+            compilation_options: options.clone(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState {
+            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            ..Default::default()
+        },
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: DEPTH,
+            depth_write_enabled: Some(first),
+            // Depth is near / distance: the larger is the nearer.
+            depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some(fragment),
+            compilation_options: options,
+            targets,
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+fn resolve_pipeline(gpu: &Gpu, module: &wgpu::ShaderModule) -> wgpu::RenderPipeline {
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("resolve"),
+        layout: None,
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some("everywhere"),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: None,
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some("resolve"),
+            compilation_options: Default::default(),
+            targets: &[Some(PICTURE.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}

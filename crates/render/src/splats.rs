@@ -1,0 +1,113 @@
+//! The points of a picture.
+
+use crate::creases;
+use crate::style::pack;
+use bytemuck::{Pod, Zeroable};
+use glam::{DVec3, Vec3};
+use surfine::records::Point;
+use surfine_points::{PointSet, Values};
+
+/// Points ready to be drawn, on the host.
+#[derive(Clone, Debug, Default)]
+pub struct Splats {
+    /// One record a disc.
+    pub points: Vec<Point>,
+    /// One a point, or none.
+    pub(crate) extras: Vec<Extra>,
+}
+
+/// What a disc may have beyond the record of the engine: mirror of `Extra` in `shaders/render/splat.wgsl`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Extra {
+    /// The disc ends where the offset from its centre has a product with the first three that exceeds the fourth; zero
+    /// for no end.
+    pub(crate) ends: [[f32; 4]; 2],
+    /// Colour for [`Coloring::Paint`](crate::Coloring::Paint).
+    pub(crate) paint: u32,
+    /// At a crease point bit 0 and 1 tell that an end has the normal of another side, bit 2 and 3 the opposite.
+    pub(crate) sides: u32,
+    /// How far the creases of the ends are.
+    distances: [f32; 2],
+}
+
+impl Extra {
+    /// Ends the disc of a crease point with another side: at the plane of that `normal`, or below it where the crease is
+    /// concave.
+    pub(crate) fn end_at_side(&mut self, i: usize, normal: Vec3, is_concave: bool) {
+        let direction = if is_concave { -normal } else { normal };
+        self.ends[i] = direction.extend(0.0).to_array();
+        self.sides |= if is_concave { 4 } else { 1 } << i;
+    }
+
+    /// Ends the disc of a smooth point at a plane: its direction, its distance from the centre, and that of the crease
+    /// point which it belongs to. The nearest two in different directions count.
+    pub(crate) fn end_at_plane(&mut self, direction: Vec3, place: f32, distance: f32) {
+        let direction_of = |end: [f32; 4]| Vec3::from_slice(&end[..3]);
+        let is_like = |i: &usize| direction_of(self.ends[*i]).dot(direction) > 0.9;
+        let is_free = |i: &usize| direction_of(self.ends[*i]) == Vec3::ZERO;
+        let farther = usize::from(self.distances[0] <= self.distances[1]);
+        let slot = (0..2).find(is_like).or((0..2).find(is_free)).unwrap_or(farther);
+        if is_free(&slot) || distance < self.distances[slot] {
+            self.ends[slot] = direction.extend(place).to_array();
+            self.distances[slot] = distance;
+        }
+    }
+}
+
+impl Splats {
+    /// The points of a cloud, relative to `center`: pictures of clouds with different origins need the same one.
+    ///
+    /// A point without a normal (zero) or a radius is drawn as a dot. `paint` gives each point a colour for
+    /// [`Coloring::Paint`](crate::Coloring::Paint). An attribute `level` gives the levels, as
+    /// `surfine refine --provenance` writes it. A crease point, one with further normals `nx2 ny2 nz2` and `nx3 ny3 nz3` or
+    /// with records that share its position, becomes one disc a side, cut off at the crease.
+    ///
+    /// # Panics
+    /// If the columns of the cloud or the paint have other lengths than the positions.
+    pub fn new(points: &PointSet, center: DVec3, paint: Option<&[[u8; 3]]>) -> Self {
+        let n = points.len();
+        assert!(points.normals.len() == n && points.radii.len() == n, "columns of one length");
+        let levels = match points.attribute("level").map(|a| &a.values) {
+            Some(Values::U8(levels)) => &levels[..],
+            _ => &[],
+        };
+        let shift = points.origin - center;
+        let record = |i: usize| Point {
+            // Exact where both origins are zero.
+            position: (points.positions[i].as_dvec3() + shift).as_vec3().to_array(),
+            radius: points.radii[i],
+            normal: points.normals[i].to_array(),
+            level: levels.get(i).copied().unwrap_or(0).into(),
+        };
+        let extras = paint.map_or_else(Vec::new, |paint| {
+            assert_eq!(paint.len(), n, "one colour a point");
+            paint.iter().map(|&c| Extra { paint: pack(c), ..Extra::default() }).collect()
+        });
+        let mut splats = Self { points: (0..n).map(record).collect(), extras };
+        creases::cut(points, &mut splats);
+        splats
+    }
+
+    /// Adds a copy of a disc with another normal.
+    pub(crate) fn push_copy(&mut self, i: usize, normal: Vec3) {
+        self.points.push(Point { normal: normal.to_array(), ..self.points[i] });
+        if !self.extras.is_empty() {
+            self.extras.push(self.extras[i]);
+        }
+    }
+
+    /// Number of discs and dots.
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Whether there is nothing to draw.
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    pub(crate) fn extra(&self, i: usize) -> Extra {
+        self.extras.get(i).copied().unwrap_or_default()
+    }
+}
