@@ -2,6 +2,8 @@
 
 @group(1) @binding(0) var colors: texture_2d<f32>;
 @group(1) @binding(1) var normals: texture_2d<f32>;
+/// 0 where nothing is seen.
+@group(1) @binding(2) var depth: texture_depth_2d;
 
 @vertex
 fn everywhere(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
@@ -25,7 +27,7 @@ fn resolve(@builtin(position) place: vec4<f32>) -> @location(0) vec4<f32> {
 /// Light and opacity of a subpixel, premultiplied.
 fn subpixel(at: vec2<u32>) -> vec4<f32> {
     let color = textureLoad(colors, at, 0);
-    if color.a == 0.0 {
+    if textureLoad(depth, at, 0) == 0.0 || color.a == 0.0 {
         return vec4(to_linear(view.background.rgb) * view.background.a, view.background.a);
     }
     let sum = textureLoad(normals, at, 0).xyz;

@@ -6,6 +6,9 @@
 // Discs that turn their backs come after the others, and only where their centre is not hidden by those: around the
 // outline of a closed surface they would stick out from behind it.
 
+/// Radius of a disc for each unit of a point's radius. The discs of the visibility passes are smaller and decide what is
+/// seen; those of the attribute pass overlap more, so that they blend smoothly.
+override disc: f32 = 1.0;
 /// Share of a disc's radius by which the visibility passes push it away from the eye: discs that overlap within this
 /// depth are one surface and blend. 0 in the attribute pass.
 override push: f32 = 0.0;
@@ -123,7 +126,7 @@ fn corner(index: u32, instance: u32) -> Corner {
     let is_dot = view.dot_radius > 0.0 || length == 0.0 || point.radius <= 0.0;
     let normal = select(-view.forward, point.normal / length, length > 0.0);
     // Three quarters of a subpixel at least, so that a far point leaves a trace.
-    let disc_radius = max(view.disc_scale * point.radius, 0.75 * pixel);
+    let disc_radius = max(disc * view.disc_scale * point.radius, 0.75 * pixel);
     let dot_radius = max(view.dot_radius, 0.75 * f32(view.supersampling)) * pixel;
     let radius = select(disc_radius, dot_radius, is_dot);
     let along = select(tangent(normal), view.right, is_dot);

@@ -10,7 +10,7 @@ struct View {
     /// Width of a subpixel at distance 1.
     pixel: f32,
     up: vec3<f32>,
-    /// Radius of a disc for each unit of a point's radius.
+    /// Factor of the size of all discs.
     disc_scale: f32,
     forward: vec3<f32>,
     /// Radius in subpixels of a raw point; 0 draws discs.

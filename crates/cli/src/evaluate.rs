@@ -7,7 +7,6 @@ use crate::watch::Watch;
 use crate::{Failure, backend, files, print};
 use serde::Serialize;
 use std::path::Path;
-use surfine::Vec3;
 use surfine_evaluate::{Evaluation, Options, Truth, errors, evaluate};
 use surfine_points::{Model, ply};
 use surfine_render::{Camera, Caption, Coloring, Splats, Style};
@@ -19,7 +18,7 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<(), Failure> {
     }
     backend::start_threads(args.threads)?;
     let watch = Watch::new(args.quiet || args.json);
-    let output = read(&args.output, &watch)?;
+    let output = with_normals(read(&args.output, &watch)?);
     let input = args.input.as_deref().map(|path| read(path, &watch)).transpose()?;
     let truth = read_truth(&args.truth, Some(args.crease_angle), &watch)?;
     let options = Options { samples: args.samples.unwrap_or(0) as usize, seed: args.seed };
@@ -66,6 +65,14 @@ fn read(path: &Path, watch: &Watch) -> Result<Model, Failure> {
     Ok(model)
 }
 
+/// A mesh without normals has those of its triangles.
+fn with_normals(mut model: Model) -> Model {
+    if model.is_mesh() && model.normals.is_none() {
+        model.normals = Some(model.vertex_normals().into_iter().map(|n| n.as_vec3()).collect());
+    }
+    model
+}
+
 /// Reads the true surface and gets it ready; edges sharper than `crease_angle` degrees are creases.
 pub(crate) fn read_truth(
     path: &Path,
@@ -94,7 +101,7 @@ fn draw_heatmap(
     let high = args.max.map_or(largest, f64::from);
     let (points, _) = output.to_points();
     let splats = Splats::new(&points, points.origin, Some(&heat(&errors, high)));
-    let seen = splats.points.iter().map(|p| Vec3::from(p.position));
+    let seen = splats.outline(1.0);
     let camera = Camera::look(seen, args.view.direction(), args.view.up(), args.size.aspect());
     let painter = Painter::new(args.backend, None, watch)?;
     let style = Style { coloring: Coloring::Data, ..Style::default() };

@@ -173,7 +173,8 @@ pub(crate) fn heat_scale(high: f64) -> [String; 2] {
 /// The camera of each frame.
 fn cameras(args: &RenderArgs, center: DVec3, splats: &[Splats]) -> Vec<Camera> {
     let aspect = args.size.aspect();
-    let seen = splats.iter().flat_map(|s| &s.points).map(|p| Vec3::from(p.position));
+    let scale = if args.points { 0.0 } else { args.splat_scale };
+    let seen = splats.iter().flat_map(|s| s.outline(scale));
     let up = args.up.map(DVec3::as_vec3);
     let local = |place: DVec3| (place - center).as_vec3();
     let camera = match args.eye {
@@ -185,8 +186,9 @@ fn cameras(args: &RenderArgs, center: DVec3, splats: &[Splats]) -> Vec<Camera> {
             if args.fit { camera.fit(seen.clone(), aspect) } else { camera }
         }
         None => {
-            let up = up.unwrap_or(args.view.up());
-            Camera::look(seen.clone(), args.view.direction(), up, aspect)
+            let turned = |v: Vec3| if args.z_up { Vec3::new(v.x, -v.z, v.y) } else { v };
+            let up = up.unwrap_or(turned(args.view.up()));
+            Camera::look(seen.clone(), turned(args.view.direction()), up, aspect)
         }
     };
     let Some(frames) = args.turntable else { return vec![camera] };

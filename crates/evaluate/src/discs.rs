@@ -106,3 +106,81 @@ fn nearest_inside(output: &Cloud<'_>, inside: &[u32], place: usize) -> f64 {
     let others = inside.iter().map(|&other| other as usize).filter(|&other| other != place);
     others.map(|other| x.distance(output.places.positions[other])).fold(f64::INFINITY, f64::min)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::distance::project;
+    use surfine_points::{DVec3, Model};
+
+    /// Two squares from -10 to 10, one at z = 0 that faces up and one below that faces down.
+    fn sheets(gap: f64) -> Truth {
+        let corner = |x: f64, y: f64, z: f64| DVec3::new(10.0 * x, 10.0 * y, z);
+        let sheet =
+            |z| [(-1, -1), (1, -1), (1, 1), (-1, 1)].map(|(x, y)| corner(x.into(), y.into(), z));
+        let positions = [sheet(0.0), sheet(-gap)].concat();
+        let triangles = vec![[0, 1, 2], [0, 2, 3], [6, 5, 4], [7, 6, 4]];
+        Truth::new(&Model { positions, triangles, ..Model::default() }).expect("the mesh is fit")
+    }
+
+    fn measure_at(center: DVec3, output: &[DVec3], share: f64, area: f64) -> Disc {
+        let model = Model { positions: output.to_vec(), ..Model::default() };
+        let cloud = Cloud::new(&model).expect("the cloud is fit");
+        let closest = project(output, None, &sheets(0.1));
+        let seeds = [Sample { position: center, normal: Some(DVec3::Z) }];
+        disc(&cloud, &closest, &seeds, share, area)
+    }
+
+    /// A point and the six around it at distance 1.
+    fn hexagon(z: f64) -> Vec<DVec3> {
+        let around = (0..6).map(|k| (f64::from(k) * PI / 3.0).sin_cos());
+        let around = around.map(|(y, x)| DVec3::new(x, y, z));
+        std::iter::once(DVec3::new(0.0, 0.0, z)).chain(around).collect()
+    }
+
+    #[test]
+    fn a_disc_has_the_value_by_hand() {
+        // Seven of ten positions in a disc of radius 1.5 that should hold half of them.
+        let mut output = hexagon(0.0);
+        output.extend([4.0, 5.0, 6.0].map(|x| DVec3::new(x, 0.0, 0.0)));
+        let found = measure_at(DVec3::ZERO, &output, 0.5, 2.0 * PI * 2.25);
+        approx::assert_relative_eq!(found.radius, 1.5, max_relative = 1e-14);
+        let even = (2.0 * PI * 2.25 / (7.0 * 3f64.sqrt())).sqrt();
+        let expected = (7.0 - 5.0) * (7.0 - 5.0) / 5.0 * (1.0 - even) * (1.0 - even) / even;
+        approx::assert_relative_eq!(found.value.unwrap(), expected, max_relative = 1e-12);
+        assert_eq!(found.skipped, 0);
+    }
+
+    #[test]
+    fn discs_with_fewer_than_five_positions_do_not_count() {
+        let four = hexagon(0.0)[..4].to_vec();
+        let found = measure_at(DVec3::ZERO, &four, 0.5, 2.0 * PI * 2.25);
+        assert_eq!((found.value, found.skipped), (None, 1));
+        let five = hexagon(0.0)[..5].to_vec();
+        assert_eq!(measure_at(DVec3::ZERO, &five, 0.5, 2.0 * PI * 2.25).skipped, 0);
+    }
+
+    #[test]
+    fn the_other_sheet_is_left_out() {
+        // So many points below that the eight nearest of each are all there.
+        let mut random = fastrand::Rng::with_seed(2);
+        let mut place = |z| DVec3::new(4.0 * random.f64() - 2.0, 4.0 * random.f64() - 2.0, z);
+        let above: Vec<DVec3> = (0..40).map(|_| place(0.0)).collect();
+        let below: Vec<DVec3> = (0..4000).map(|_| place(-0.1)).collect();
+        let radius = 1.2;
+        let found = measure_at(DVec3::ZERO, &[above.clone(), below].concat(), 0.01, PI * 144.0);
+        approx::assert_relative_eq!(found.radius, radius, max_relative = 1e-14);
+
+        let inside: Vec<DVec3> = above.into_iter().filter(|p| p.length() <= radius).collect();
+        let count = inside.len() as f64;
+        let even = (2.0 * PI * radius * radius / count / 3f64.sqrt()).sqrt();
+        let nearest = |p: &DVec3| {
+            let others = inside.iter().filter(|&q| q != p).map(|q| q.distance(*p));
+            others.fold(f64::INFINITY, f64::min)
+        };
+        let clutter =
+            inside.iter().map(|p| (nearest(p) - even).powi(2) / even).sum::<f64>() / count;
+        let expected = (count - 40.4).powi(2) / 40.4 * clutter;
+        approx::assert_relative_eq!(found.value.unwrap(), expected, max_relative = 1e-9);
+    }
+}

@@ -14,7 +14,7 @@ pub enum Unfit {
     #[error("all points of the {model} are in one place: give at least two different positions")]
     OnePlace { model: &'static str },
     #[error(
-        "the {model}'s vertex {vertex} has the coordinate {value:e}, which is not within ±1e100: remove or repair it"
+        "the {model}'s vertex {vertex} has the coordinate {value:e}, which is not within ±1e70: remove or repair it"
     )]
     Coordinate { model: &'static str, vertex: usize, value: f64 },
     #[error("the {model} has {found} entries of {column} for {points} points: give one a point")]
@@ -52,8 +52,8 @@ pub(crate) fn check(model: &Model, name: &'static str) -> Result<(), Unfit> {
 }
 
 fn check_coordinates(model: &Model, name: &'static str) -> Result<(), Unfit> {
-    // Squares of larger ones overflow. The comparison is false for what isn't a number.
-    let fits = |value: &f64| value.abs() <= 1e100;
+    // Squares of areas of larger ones overflow. The comparison is false for what isn't a number.
+    let fits = |value: &f64| value.abs() <= 1e70;
     for (vertex, position) in model.positions.iter().enumerate() {
         if let Some(value) = position.to_array().into_iter().find(|v| !fits(v)) {
             return Err(Unfit::Coordinate { model: name, vertex, value });

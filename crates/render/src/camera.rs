@@ -5,7 +5,7 @@ use std::fmt;
 use std::str::FromStr;
 
 /// Room that [`Camera::fit`] leaves between positions and the edges of the picture, as a factor.
-const MARGIN: f32 = 1.06;
+const MARGIN: f32 = 1.03;
 
 /// A perspective camera.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,7 +5,7 @@
 //! (clipped splats, Zwicker et al. 2004).
 
 use crate::splats::{Extra, Splats};
-use crate::style::DISC;
+use crate::style::SOFT;
 use glam::Vec3;
 use std::collections::HashMap;
 use surfine_points::{Grid, GridShape, PointSet, Values};
@@ -47,7 +47,7 @@ pub(crate) fn cut(points: &PointSet, splats: &mut Splats) {
                 for neighbor in near.iter().filter(|neighbor| neighbor.side == k) {
                     let place = -end.dot(neighbor.offset);
                     // A neighbour beyond the plane tells that the surface turns: a flat cut would be wrong.
-                    if (0.0..DISC * splats.points[neighbor.disc].radius).contains(&place) {
+                    if (0.0..SOFT * splats.points[neighbor.disc].radius).contains(&place) {
                         let distance = neighbor.offset.length();
                         splats.extras[neighbor.disc].end_at_plane(end, place, distance);
                     }

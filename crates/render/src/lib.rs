@@ -1,9 +1,10 @@
 //! Draws clouds of oriented points as splats: each point a disc on its tangent plane, overlapping discs blended, light
 //! computed from the blended normals (deferred splatting after Botsch, Hornung, Zwicker and Kobbelt 2005).
 //!
-//! A picture takes three passes. *Visibility* draws the discs into a depth buffer, pushed back by part of their radius.
-//! *Attributes* adds up colours and normals of all discs that are not behind that depth, weighted so that they fade
-//! towards their outline. *Resolve* divides by the weights, lights each subpixel and averages.
+//! A picture takes four passes. *Visibility* draws small discs into a depth buffer, pushed back by part of their radius:
+//! first those that show their fronts, then those that show their backs. *Attributes* adds up colours and normals of larger
+//! discs that are not behind that depth, weighted so that they fade towards their outline. *Resolve* divides by the
+//! weights, lights each subpixel that visibility reached, and averages.
 //!
 //! [`Renderer`] does so on the GPU, from points of the host or straight from the engine's device buffers
 //! ([`DeviceSplats::from`]); [`cpu::draw`] draws the same picture without one.

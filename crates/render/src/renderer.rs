@@ -2,7 +2,7 @@
 
 use crate::cpu::PUSH;
 use crate::splats::Extra;
-use crate::style::packed_ramp;
+use crate::style::{SOFT, SOLID, packed_ramp};
 use crate::view::Uniform;
 use crate::{Camera, Error, Picture, Size, Splats, Style};
 use surfine::records::Point;
@@ -211,7 +211,7 @@ impl Renderer {
             color_attachments: &[color_attachment(&lit)],
             ..Default::default()
         });
-        let textures = [&colors, &normals].map(wgpu::BindingResource::TextureView);
+        let textures = [&colors, &normals, &nearest].map(wgpu::BindingResource::TextureView);
         pass.set_pipeline(&self.resolve);
         pass.set_bind_group(0, &self.bind(&self.resolve, 0, &shared[..1]), &[]);
         pass.set_bind_group(1, &self.bind(&self.resolve, 1, &textures), &[]);
@@ -358,7 +358,8 @@ fn splat_pipeline(
     targets: &[Option<wgpu::ColorTargetState>],
 ) -> wgpu::RenderPipeline {
     let first = targets.is_empty();
-    let constants = [("push", if first { f64::from(PUSH) } else { 0.0 })];
+    let (push, disc) = if first { (PUSH, SOLID) } else { (0.0, SOFT) };
+    let constants = [("push", push.into()), ("disc", disc.into())];
     let options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(fragment),

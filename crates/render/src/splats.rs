@@ -1,7 +1,7 @@
 //! The points of a picture.
 
 use crate::creases;
-use crate::style::pack;
+use crate::style::{SOLID, pack};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 use surfine::records::Point;
@@ -105,6 +105,18 @@ impl Splats {
     /// Whether there is nothing to draw.
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
+    }
+
+    /// Places that must be seen for all discs of that scale to be seen: four on the outline of each, and the middle of
+    /// each dot. For [`Camera::look`](crate::Camera::look).
+    pub fn outline(&self, splat_scale: f32) -> impl Iterator<Item = Vec3> + Clone {
+        self.points.iter().flat_map(move |point| {
+            let (along, across) =
+                Vec3::from(point.normal).normalize_or_zero().any_orthonormal_pair();
+            let radius = SOLID * splat_scale * point.radius.max(0.0);
+            let radius = if point.normal == [0.0; 3] { 0.0 } else { radius };
+            [along, -along, across, -across].map(|axis| Vec3::from(point.position) + radius * axis)
+        })
     }
 
     pub(crate) fn extra(&self, i: usize) -> Extra {

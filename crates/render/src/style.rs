@@ -53,9 +53,13 @@ impl Default for Style {
     }
 }
 
-/// Radius of a disc for each unit of a point's radius. An equilateral triangle of discs on its corners is covered by
-/// 0.577 of its edge; radii reach a little beyond the neighbours, by 1.02 after a refinement and mostly 1.25 before.
-pub(crate) const DISC: f32 = 0.65;
+/// Radius of a disc for each unit of a point's radius, which reaches the neighbours or a little beyond: 0.577 would just
+/// cover an equilateral triangle. These discs decide what is seen.
+pub(crate) const SOLID: f32 = 0.65;
+
+/// The same for colours and normals: they reach farther, so that they blend smoothly where triangles are long, while
+/// outlines stay as tight as the smaller discs.
+pub(crate) const SOFT: f32 = 0.95;
 
 /// The colour at a place from 0 to 1 of the ramp: viridis, which stays ordered in grey and for colour-blind eyes.
 pub fn ramp(place: f64) -> [u8; 3] {

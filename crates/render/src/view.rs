@@ -1,6 +1,5 @@
 //! The uniform of a picture: mirror of `View` in `shaders/render/view.wgsl`.
 
-use crate::style::DISC;
 use crate::{Camera, Coloring, Size, Style};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
@@ -56,7 +55,7 @@ impl Uniform {
             right: right.to_array(),
             pixel: 2.0 * half / rows,
             up: up.to_array(),
-            disc_scale: DISC * style.splat_scale,
+            disc_scale: style.splat_scale,
             forward: forward.to_array(),
             dot_radius: style.dots.map_or(0.0, |radius| radius * style.supersampling as f32),
             light: (0.7 * up - 0.6 * right - 0.8 * forward).normalize_or(Vec3::Z).to_array(),

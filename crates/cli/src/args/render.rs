@@ -17,7 +17,7 @@ Examples:
 
 Several inputs are drawn side by side by the same camera. A mesh shows its vertices. Points without a
 normal are dots; missing radii are made up from the neighbors. The back of a disc is orange: normals
-should look at you. Axes: x to the right, y up, z towards the viewer of `--view front`.";
+should look at you. Axes: x to the right, y up, z towards the viewer of `--view front`; see --z-up.";
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -34,6 +34,9 @@ pub(crate) struct RenderArgs {
     /// From where to look
     #[arg(long, value_name = "SIDE", default_value = "front", value_parser = view())]
     pub(crate) view: View,
+    /// The z axis is up, as in terrain and CAD: the front is then the side of -y
+    #[arg(long, conflicts_with_all = ["eye", "up"])]
+    pub(crate) z_up: bool,
     /// Place of the camera, in the units of IN; without --fit exactly there
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, conflicts_with = "view")]
     #[arg(allow_hyphen_values = true)]

@@ -222,3 +222,47 @@ fn polyline(positions: &[DVec3], edges: Vec<[u32; 2]>) -> Polyline {
 fn to_parry(v: DVec3) -> Vector {
     Vector::from_array(v.to_array())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The square from 0 to 10, cut into triangles of very different size; it faces up.
+    fn square() -> Mesh {
+        let corners = [(0, 0), (10, 0), (10, 10), (0, 10), (3, 1)];
+        let positions = corners.map(|(x, y)| DVec3::new(x.into(), y.into(), 0.0)).to_vec();
+        let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
+        let model = Model { positions, triangles, ..Model::default() };
+        Mesh::new(&model, 40.0).expect("the mesh is fit").0
+    }
+
+    #[test]
+    fn samples_lie_on_the_mesh_more_evenly_than_random_points() {
+        let mesh = square();
+        for seed in 0..5 {
+            let samples = mesh.samples(10_000, seed);
+            let mut cells = [0.0f64; 100];
+            for Sample { position: p, normal } in &samples {
+                assert_eq!((p.z, *normal), (0.0, Some(DVec3::Z)));
+                cells[p.y as usize * 10 + p.x as usize] += 1.0;
+            }
+            // About 1 for random points; 0.02 to 0.04 here.
+            let variance = cells.iter().map(|c| (c - 100.0).powi(2)).sum::<f64>() / 100.0;
+            assert!(variance / 100.0 < 0.15, "{}", variance / 100.0);
+        }
+    }
+
+    #[test]
+    fn each_triangle_gets_its_share_to_a_point() {
+        let mesh = square();
+        let mut counts = [0.0f64; 4];
+        for sample in mesh.samples(997, 3) {
+            let Vector { x, y, .. } = to_parry(sample.position);
+            let at = mesh.shape.project_local_point_and_get_location(Vector::new(x, y, 0.0), false);
+            counts[at.1.0 as usize] += 1.0;
+        }
+        for (count, area) in counts.into_iter().zip([5.0, 35.0, 45.0, 15.0]) {
+            assert!((count - 9.97 * area).abs() <= 1.0, "{counts:?}");
+        }
+    }
+}

@@ -66,7 +66,7 @@ fn on_an_edge_the_side_that_was_asked_for_counts() {
 
 /// The sides of the cube on a grid of 21 by 21, each with its normal: edges twice, corners three times.
 fn points_of_the_cube() -> Model {
-    let steps = || (0..21).map(|i| f64::from(i) / 10.0 - 1.0);
+    let steps = || (-10..=10).map(|i| f64::from(i) / 10.0);
     let place = |side: DVec3| move |(u, v): (f64, f64)| side + u * side.yzx() + v * side.zxy();
     let cells = || steps().flat_map(|u| steps().map(move |v| (u, v)));
     let positions = SIDES.into_iter().flat_map(|side| cells().map(place(side))).collect();

@@ -62,16 +62,16 @@ fn nothing_is_seen_where_nothing_is_planted() {
 #[test]
 fn a_hole_is_seen_by_the_coverage_alone() {
     let scene = scene();
-    // Three spacings across: the middle is 1.36 from the nearest point, where nothing was above 0.90 before.
+    // Three spacings across. Nothing of the torus was farther than 0.90 from a point before.
     let small = scenes::keep(&scene.clean, |p| p.distance(CENTER) > 1.5 * scene.spacing);
     let small = scenes::measure(&small, &scene.truth);
     assert_eq!(seen(&small), ["coverage"], "{small}");
     assert!(small.coverage.over_1 > 0.0 && small.coverage.over_2 == 0.0, "{small}");
-    // Three spacings from the middle to the rim: 2.8.
+    // Three spacings from the middle to the rim: 2.46, for points beside a hole have a larger spacing of their own.
     let hole = scenes::keep(&scene.clean, |p| p.distance(CENTER) > 3.0 * scene.spacing);
     let hole = scenes::measure(&hole, &scene.truth);
     assert_eq!(seen(&hole), ["coverage"], "{hole}");
-    assert!((2.5..3.1).contains(&hole.coverage.max), "{hole}");
+    assert!((2.3..3.1).contains(&hole.coverage.max), "{hole}");
     assert!(hole.coverage.over_2 > 0.0 && hole.coverage.p999 > 1.5, "{hole}");
 
     // What is left is what was there before.

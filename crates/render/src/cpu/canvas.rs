@@ -73,8 +73,10 @@ impl Canvas {
     }
 
     pub(super) fn visibility(&mut self, disc: &Disc) {
-        self.each_subpixel(disc, |canvas, i, _, distance| {
-            canvas.depth[i] = canvas.depth[i].min(distance + disc.pushed);
+        self.each_subpixel(disc, |canvas, i, place, distance| {
+            if place.length_squared() <= disc.solid {
+                canvas.depth[i] = canvas.depth[i].min(distance + disc.pushed);
+            }
         });
     }
 
@@ -105,7 +107,7 @@ impl Canvas {
     fn subpixel(&self, view: &Uniform, size: Size, row: u32, column: u32) -> Vec4 {
         let i = (row * self.columns + column) as usize;
         let color = self.color[i];
-        if color.w == 0.0 {
+        if self.depth[i] == f32::INFINITY || color.w == 0.0 {
             return background(view);
         }
         let x = (column as f32 + 0.5) / self.columns as f32 * 2.0 - 1.0;

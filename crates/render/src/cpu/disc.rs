@@ -2,6 +2,7 @@
 
 use crate::shading::{to_linear, unpack};
 use crate::splats::Extra;
+use crate::style::{SOFT, SOLID};
 use crate::view::{DATA, LEVEL, NORMAL, PAINT, RADIUS, Uniform};
 use crate::{Size, Splats};
 use glam::{Mat3, Vec2, Vec3};
@@ -23,6 +24,8 @@ pub(super) struct Disc {
     pub(super) low: [u32; 2],
     /// The column and the row after the last.
     pub(super) high: [u32; 2],
+    /// Squared radius of the disc that decides what is seen, where that of colours and normals is 1.
+    pub(super) solid: f32,
     /// Products of the disc's axes with its ends, and where it ends.
     pub(super) ends: [Vec3; 2],
     /// Distance by which the visibility passes push it away from the eye.
@@ -39,8 +42,10 @@ pub(super) struct Disc {
 struct Placed {
     is_dot: bool,
     normal: Vec3,
-    radius: f32,
-    /// Of the length of the radius.
+    /// Of the disc of colours and normals, and of the one that decides what is seen.
+    soft: f32,
+    solid: f32,
+    /// Of the length of the soft radius.
     axes: [Vec3; 2],
 }
 
@@ -56,7 +61,7 @@ impl Disc {
         let (point, extra) = (&splats.points[i], splats.extra(i));
         let ray = Vec3::from(point.position) - Vec3::from(view.eye);
         let distance = ray.dot(view.forward.into());
-        let Placed { is_dot, normal, radius, axes } = place(view, point, distance);
+        let Placed { is_dot, normal, soft, solid, axes } = place(view, point, distance);
         let screen = Screen::new(view, size);
         let [a, b] = axes.map(|axis| screen.project(axis));
         let center = screen.project(ray);
@@ -82,8 +87,9 @@ impl Disc {
             center: middle.extend(distance),
             low,
             high,
+            solid: (solid / soft).powi(2),
             ends: extra.ends.map(end),
-            pushed: if is_dot { 0.0 } else { PUSH * radius * distance / ray.length() },
+            pushed: if is_dot { 0.0 } else { PUSH * solid * distance / ray.length() },
             color: color(view, ramp, point, extra.paint, normal, shows_back),
             normal: if shows_back { -normal } else { normal },
             shows_back,
@@ -146,13 +152,15 @@ fn place(view: &Uniform, point: &Point, distance: f32) -> Placed {
     let pixel = distance * view.pixel;
     let normal = Vec3::from(point.normal).normalize_or(-forward);
     let is_dot = view.dot_radius > 0.0 || point.normal == [0.0; 3] || point.radius <= 0.0;
-    let (radius, along, across) = if is_dot {
-        (view.dot_radius.max(0.75 * view.supersampling as f32) * pixel, right, up)
-    } else {
-        let along = tangent(normal);
-        ((view.disc_scale * point.radius).max(0.75 * pixel), along, normal.cross(along))
-    };
-    Placed { is_dot, normal, radius, axes: [radius * along, radius * across] }
+    if is_dot {
+        let radius = view.dot_radius.max(0.75 * view.supersampling as f32) * pixel;
+        let axes = [radius * right, radius * up];
+        return Placed { is_dot, normal, soft: radius, solid: radius, axes };
+    }
+    let disc = |size: f32| (size * view.disc_scale * point.radius).max(0.75 * pixel);
+    let (soft, solid) = (disc(SOFT), disc(SOLID));
+    let along = tangent(normal);
+    Placed { is_dot, normal, soft, solid, axes: [soft * along, soft * normal.cross(along)] }
 }
 
 /// A unit vector at right angles to `n`.
