@@ -86,6 +86,23 @@ fn kernels_are_valid() {
 }
 
 #[test]
+fn shaders_of_pictures_are_valid() {
+    for (name, text) in surfine_render::SHADERS {
+        validate(name, &parse_text(name, text));
+    }
+}
+
+#[test]
+fn every_file_of_the_painter_is_used() {
+    let files = files("shaders/render");
+    assert!(files.len() >= surfine_render::SHADERS.len(), "{:?}", files.keys());
+    for (stem, text) in files {
+        let is_used = surfine_render::SHADERS.iter().any(|(_, all)| all.contains(&text));
+        assert!(is_used, "no shader uses render/{stem}.wgsl");
+    }
+}
+
+#[test]
 fn entry_points_are_named_like_their_files() {
     for shader in SHADERS {
         let module = parse(shader);

@@ -58,12 +58,12 @@ surface. Both interpolate the 600 points.""",
     (
         "Figure 9: a large hole",
         """The paper fills a hole by raising the radii of the points around it and refining eight times. Here a ball was cut out of Igea
-and the radii of the 66 points around it reach across. Two steps: the hole begins to close from many sides, but its points stay
-coarser than the rest. A step of its own for holes is to come.""",
+and the radii of the 66 points around it reach across. Two steps, drawn as raw points: the hole begins to close from many sides, but
+its points stay coarser than the rest. A step of its own for holes is to come.""",
         [
             "surfine refine data/points/igea-5000-hole.ply -o hole.ply --levels 2 -q",
             "surfine render data/points/igea-5000-hole-open.ply hole.ply data/mesh/igea.ply -o figure-9.png --size 480x560"
-            " --eye=-1.1,0.35,1.1 --target=-0.15,0.08,0.05 --caption 'the hole' --caption 'after 2 steps' --caption 'true surface'",
+            " --eye=-1.3,0.4,1.2 --target=-0.05,0,0 --points --point-size 0.8 --caption 'the hole' --caption 'after 2 steps' --caption 'true surface'",
             "surfine evaluate hole.ply --truth data/mesh/igea.ply --input data/points/igea-5000-hole.ply",
         ],
     ),
@@ -102,7 +102,7 @@ def section(title: str, text: str, commands: list[str], folder: Path, environmen
     """One figure in Markdown; its pictures go beside this script."""
     before = set(folder.glob("*.png"))
     results = [run(command, folder, environment) for command in commands]
-    pictures = sorted(set(folder.glob("*.png")) - before)
+    pictures = sorted(set(folder.glob("*.png")) - before, key=lambda path: path.stat().st_mtime_ns)
     for picture in pictures:
         (HERE / picture.name).write_bytes(picture.read_bytes())
     shown = "\n\n".join(f"![{title}](gallery/{picture.name})" for picture in pictures)

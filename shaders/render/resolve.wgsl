@@ -34,7 +34,8 @@ fn subpixel(at: vec2<u32>) -> vec4<f32> {
     let size = vec2<f32>(textureDimensions(colors));
     let place = (vec2<f32>(at) + 0.5) / size * vec2(2.0, -2.0) + vec2(-1.0, 1.0);
     let ray = view.forward + place.x / view.scale.x * view.right + place.y / view.scale.y * view.up;
-    // Opposite normals may cancel.
-    let normal = select(-view.forward, normalize(sum), dot(sum, sum) > 0.0);
+    // Opposite normals may cancel, but for the rounding of half floats.
+    let is_left = dot(sum, sum) > 1e-5 * color.a * color.a;
+    let normal = select(-view.forward, normalize(sum), is_left);
     return vec4(shade(color.rgb / color.a, normal, normalize(-ray)), 1.0);
 }

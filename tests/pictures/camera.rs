@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use std::f32::consts::{PI, TAU};
+use std::ops::Range;
 use surfine_points::Vec3;
 use surfine_render::{Camera, View};
 
@@ -19,6 +20,9 @@ fn project(camera: &Camera, aspect: f32, point: Vec3) -> [f64; 2] {
     [ray.dot(right) / (half * f64::from(aspect)), ray.dot(up) / half]
 }
 
+/// Where the outermost point of a cloud that fits lies. The margin is 3 %, so at 1 / 1.03, but for rounding.
+const FILLED: Range<f64> = 0.970..0.972;
+
 /// A long box off the origin, so that no direction and no axis is like another.
 fn corners() -> impl Iterator<Item = Vec3> + Clone {
     let corner = |i: u32| Vec3::from([0, 1, 2].map(|bit| (i >> bit & 1) as f32));
@@ -30,12 +34,12 @@ fn everything_fits_into_the_picture_and_fills_it() {
     for view in View::ALL {
         for aspect in [0.3, 0.7, 1.0, 1.6, 3.0] {
             for fov in [0.1, Camera::FOV, 1.5] {
-                let start = Camera { eye: view.direction(), target: Vec3::ZERO, up: view.up(), fov };
+                let start =
+                    Camera { eye: view.direction(), target: Vec3::ZERO, up: view.up(), fov };
                 let camera = start.fit(corners(), aspect);
                 let places = corners().flat_map(|point| project(&camera, aspect, point));
                 let largest = places.map(f64::abs).fold(0.0, f64::max);
-                // The margin is 6 %: 1 / 1.06, but for rounding.
-                assert!((largest - 0.9434).abs() < 1e-4, "{view} {aspect} {fov}: {largest}");
+                assert!(FILLED.contains(&largest), "{view} {aspect} {fov}: {largest}");
                 let direction = (camera.eye - camera.target).normalize();
                 assert!(direction.abs_diff_eq(view.direction(), 1e-6), "{view}");
             }
@@ -51,7 +55,7 @@ fn look_is_fit_with_the_usual_angle() {
     assert!(camera.target.abs_diff_eq(Vec3::new(12.5, -3.5, 4.0), 1e-6));
     let largest =
         corners().flat_map(|p| project(&camera, 1.5, p)).map(f64::abs).fold(0.0, f64::max);
-    assert!((largest - 0.9434).abs() < 1e-4, "{largest}");
+    assert!(FILLED.contains(&largest), "{largest}");
 }
 
 #[test]

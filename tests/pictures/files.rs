@@ -59,7 +59,7 @@ fn a_picture_comes_back() {
     colorful(0).write_png(&path).unwrap();
     let decoded = decode(&path);
     assert_eq!(decoded.frames, [colorful(0)]);
-    assert_eq!(decoded.animation, None, "a plain file");
+    assert!(decoded.animation.is_none(), "a plain file");
     assert_eq!(names(folder.path()), ["a.png"]);
 }
 
@@ -75,7 +75,7 @@ fn an_animation_comes_back() {
     let animation = decoded.animation.unwrap();
     assert_eq!((animation.num_frames, animation.num_plays), (3, 0), "0 plays: for ever");
     write_animation(&path, &frames[..1], 24).unwrap();
-    assert_eq!(decode(&path).animation, None, "one picture is a plain file");
+    assert!(decode(&path).animation.is_none(), "one picture is a plain file");
 }
 
 #[test]

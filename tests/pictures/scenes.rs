@@ -1,7 +1,7 @@
 //! Clouds, and what is seen of them.
 
 use surfine_points::shapes::{Sampling, Shape, sample};
-use surfine_points::{Attribute, DVec3, PointSet, RefineParams, Values, Vec3};
+use surfine_points::{Attribute, DVec3, PointSet, RefineParams, Refined, Values, Vec3};
 use surfine_render::{Camera, Size, Splats, Style, View};
 
 /// Everything that makes a picture.
@@ -13,7 +13,7 @@ pub(crate) struct Scene {
     pub size: Size,
 }
 
-/// Nothing but opaque black where no cloud is, but told from a black cloud.
+/// A background that no cloud is mistaken for.
 pub(crate) const CLEAR: [u8; 4] = [0; 4];
 
 impl Scene {
@@ -24,9 +24,9 @@ impl Scene {
 
     pub(crate) fn painted(points: &PointSet, paint: Option<&[[u8; 3]]>) -> Self {
         let size = Size { width: 160, height: 120 };
-        let seen = points.positions.iter().copied();
-        let camera = Camera::look(seen, View::Iso.direction(), View::Iso.up(), size.aspect());
         let splats = Splats::new(points, DVec3::ZERO, paint);
+        let view = View::Iso;
+        let camera = Camera::look(splats.outline(1.0), view.direction(), view.up(), size.aspect());
         Self { splats, camera, style: Style::default(), size }
     }
 
@@ -59,11 +59,12 @@ pub(crate) fn torus(levels: u32) -> PointSet {
 }
 
 fn refined(points: &PointSet, levels: u32) -> PointSet {
-    if levels == 0 {
-        return points.clone();
-    }
     let params = RefineParams { levels, ..RefineParams::default() };
-    let refined = surfine_reference::refine(points, &params).expect("generated clouds are sound");
+    with_levels(surfine_reference::refine(points, &params).expect("generated clouds are sound"))
+}
+
+/// The points with the level of each, as a file would tell it.
+pub(crate) fn with_levels(refined: Refined) -> PointSet {
     let levels = Attribute::new("level", Values::U8(refined.levels()));
     let mut points = refined.points;
     points.attributes.push(levels);
@@ -85,9 +86,8 @@ pub(crate) fn cube(creases: Creases) -> PointSet {
     let mut points = PointSet::default();
     let mut further = [const { Vec::new() }; 6];
     let ends = |c: i32| c == 0 || c == STEPS;
-    let lattice = (0..=STEPS).flat_map(|x| {
-        (0..=STEPS).flat_map(move |y| (0..=STEPS).map(move |z| [x, y, z]))
-    });
+    let lattice = (0..=STEPS)
+        .flat_map(|x| (0..=STEPS).flat_map(move |y| (0..=STEPS).map(move |z| [x, y, z])));
     for place in lattice.filter(|place| place.iter().any(|&c| ends(c))) {
         let position = Vec3::from(place.map(|c| 2.0 * c as f32 / STEPS as f32 - 1.0));
         let normals: Vec<Vec3> = (0..3)
@@ -116,13 +116,21 @@ pub(crate) fn cube(creases: Creases) -> PointSet {
     points
 }
 
-/// Turns the normals of the points for which `chosen` holds.
-pub(crate) fn flip(points: &mut PointSet, chosen: impl Fn(Vec3) -> bool) {
+/// Turns the normals of the points for which `is_chosen` holds.
+pub(crate) fn flip(points: &mut PointSet, is_chosen: impl Fn(Vec3) -> bool) {
     for (normal, &position) in points.normals.iter_mut().zip(&points.positions) {
-        if chosen(position) {
+        if is_chosen(position) {
             *normal = -*normal;
         }
     }
+}
+
+/// The points for whose numbers `keep` holds.
+pub(crate) fn chosen(points: &PointSet, keep: impl Fn(usize) -> bool) -> PointSet {
+    let kept = || (0..points.len()).filter(|&i| keep(i));
+    let vectors = |column: &[Vec3]| kept().map(|i| column[i]).collect();
+    let radii = kept().map(|i| points.radii[i]).collect();
+    PointSet::new(vectors(&points.positions), vectors(&points.normals), radii)
 }
 
 /// The clouds as one.

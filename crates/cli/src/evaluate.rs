@@ -23,7 +23,8 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<(), Failure> {
     let truth = read_truth(&args.truth, Some(args.crease_angle), &watch)?;
     let options = Options { samples: args.samples.unwrap_or(0) as usize, seed: args.seed };
     let mut progress = |measure: &'static str| watch.step(format!("measuring {measure}"));
-    let evaluation = evaluate(&output, &truth, input.as_ref(), &options, &mut progress)?;
+    let evaluation = evaluate(&output, &truth, input.as_ref(), &options, &mut progress)
+        .map_err(|e| Failure(format!("{}: {e}", args.output.display())))?;
     if let Some(path) = &args.heatmap {
         draw_heatmap(args, path, &output, &truth, &watch)?;
     }

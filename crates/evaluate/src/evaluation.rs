@@ -105,7 +105,7 @@ fn measure(
     let closest = distance::project(&cloud.model.positions, cloud.normals.as_deref(), truth);
     let distance = distance::measure(cloud, truth, &closest);
     progress("coverage");
-    let coverage = coverage::measure(cloud, truth, samples, seed(0));
+    let coverage = coverage::measure(cloud, truth, &closest, samples, seed(0));
     progress("normals");
     let normals = normals::measure(cloud, truth, &closest);
     progress("uniformity");
@@ -151,4 +151,18 @@ pub fn errors(output: &Model, truth: &Truth) -> Result<Vec<f64>, Unfit> {
     let normals = output.normals.as_deref().map(units);
     let closest = distance::project(&output.positions, normals.as_deref(), truth);
     Ok(closest.into_iter().map(|c| c.distance).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_grow_with_the_output_between_two_limits() {
+        let chosen = |output| Options::default().coverage_samples(output);
+        let counts = [2, 50_000, 123_456, 500_000, 9_000_000].map(chosen);
+        assert_eq!(counts, [100_000, 100_000, 246_912, 1_000_000, 1_000_000]);
+        let wanted = Options { samples: 7, ..Options::default() };
+        assert_eq!(wanted.coverage_samples(9_000_000), 7);
+    }
 }

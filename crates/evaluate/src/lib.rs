@@ -41,7 +41,7 @@ mod uniformity;
 
 pub use chamfer::{Chamfer, Plain, Pu};
 pub use colors::ColorError;
-pub use coverage::Coverage;
+pub use coverage::{Along, Coverage};
 pub use discs::Disc;
 pub use distance::Distance;
 pub use error::Unfit;

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::coverage::{Along, Coverage};
 use crate::discs::Disc;
 use crate::evaluation::Evaluation;
 use crate::spread::{Angles, Spread};
@@ -53,21 +54,29 @@ impl Evaluation {
             TruthKind::TangentPlanes => "distance to tangent planes",
             TruthKind::Points => "distance to points",
         };
-        let gaps = format!(
-            "max {}  p99.9 {}  over 1: {}  over 2: {}  of {} samples",
-            number(coverage.max),
-            number(coverage.p999),
-            percent(coverage.over_1),
-            percent(coverage.over_2),
-            coverage.samples
-        );
-        vec![
+        let gaps = |max, p999, over_1, over_2| {
+            format!(
+                "max {}  p99.9 {}  over 1: {}  over 2: {}",
+                number(max),
+                number(p999),
+                percent(over_1),
+                percent(over_2)
+            )
+        };
+        let &Coverage { max, p999, over_1, over_2, samples, max_distance, along } = coverage;
+        let straight = format!("{}  of {samples} samples", gaps(max, p999, over_1, over_2));
+        let mut rows = vec![
             row(kind, "file units", spread(&distance.absolute)),
             row("", "diagonals", spread(&distance.in_diagonals)),
             row("", "spacings", spread(&distance.in_spacings)),
-            row("truth to output (holes)", "local spacings", gaps),
-            row("", "file units", format!("max {}", number(coverage.max_distance))),
-        ]
+            row("truth to output (holes)", "local spacings", straight),
+            row("", "file units", format!("max {}", number(max_distance))),
+        ];
+        rows.extend(along.map(|along| {
+            let Along { max, p999, over_1, over_2 } = along;
+            row("  along the surface", "local spacings", gaps(max, p999, over_1, over_2))
+        }));
+        rows
     }
 
     fn normal_rows(&self) -> Vec<Row> {

@@ -36,6 +36,8 @@ pub(crate) fn cut(points: &PointSet, splats: &mut Splats) {
     for &(disc, _) in creases.iter().flat_map(|crease| &crease.sides) {
         is_smooth[disc] = false;
     }
+    // Sides have fixed places: other ends must find them there.
+    let mut planes = Vec::new();
     for crease in &creases {
         let near = crease.neighbors(&grid, splats, &is_smooth);
         for (k, &(disc, _)) in crease.sides.iter().enumerate() {
@@ -49,12 +51,13 @@ pub(crate) fn cut(points: &PointSet, splats: &mut Splats) {
                     // A neighbour beyond the plane tells that the surface turns: a flat cut would be wrong.
                     if (0.0..SOFT * splats.points[neighbor.disc].radius).contains(&place) {
                         let distance = neighbor.offset.length();
-                        splats.extras[neighbor.disc].end_at_plane(end, place, distance);
+                        planes.push((neighbor.disc, end, place, distance));
                     }
                 }
             }
         }
     }
+    planes.into_iter().for_each(|(i, end, at, far)| splats.extras[i].end_at_plane(end, at, far));
 }
 
 /// A disc near a crease point.

@@ -96,7 +96,8 @@ impl Renderer {
     /// # Errors
     /// The device has no room for them.
     pub fn upload(&self, splats: &Splats) -> Result<DeviceSplats, Error> {
-        let most = (self.gpu.largest_binding() / size_of::<Point>() as u64) as usize;
+        let widest = if splats.extras.is_empty() { size_of::<Point>() } else { size_of::<Extra>() };
+        let most = self.gpu.largest_binding() as usize / widest;
         let usage = wgpu::BufferUsages::STORAGE;
         let parts = self.gpu.guarded(|| {
             let chunks = splats.points.chunks(most).enumerate();

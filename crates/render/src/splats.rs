@@ -123,3 +123,22 @@ impl Splats {
         self.extras.get(i).copied().unwrap_or_default()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::view::tests::{members, module, wgsl_struct};
+
+    #[test]
+    fn records_are_laid_out_alike() {
+        let module = module("splat");
+        let point = members!(Point::default(), Point { position, radius, normal, level });
+        assert_eq!(wgsl_struct(&module, "Point"), (point, size_of::<Point>()));
+
+        let extra = members!(Extra::default(), Extra { ends, paint, sides } padding distances);
+        let (mut members, size) = wgsl_struct(&module, "Extra");
+        // The shader does not read the distances.
+        assert_eq!(members.pop().map(|m| m.0).as_deref(), Some("padding"));
+        assert_eq!((members, size), (extra, size_of::<Extra>()));
+    }
+}

@@ -70,3 +70,99 @@ impl Uniform {
         }
     }
 }
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// A shader as the driver's compiler sees it.
+    pub(crate) fn module(name: &str) -> naga::Module {
+        let text = crate::SHADERS.iter().find(|(n, _)| *n == name).expect(name).1;
+        naga::front::wgsl::parse_str(text)
+            .unwrap_or_else(|e| panic!("{}", e.emit_to_string_with_path(text, name)))
+    }
+
+    /// A member of a struct: name, offset and type.
+    pub(crate) type Member = (String, usize, String);
+
+    /// The members and the size of a WGSL struct.
+    pub(crate) fn wgsl_struct(module: &naga::Module, name: &str) -> (Vec<Member>, usize) {
+        let mut types = module.types.iter().map(|(_, ty)| ty);
+        let ty = types.find(|ty| ty.name.as_deref() == Some(name)).expect(name);
+        let naga::TypeInner::Struct { members, span } = &ty.inner else {
+            panic!("{name} is no struct")
+        };
+        let member = |m: &naga::StructMember| {
+            (m.name.clone().unwrap_or_default(), m.offset as usize, rust_name(module, m.ty))
+        };
+        (members.iter().map(member).collect(), *span as usize)
+    }
+
+    /// What a type is called in Rust.
+    fn rust_name(module: &naga::Module, ty: naga::Handle<naga::Type>) -> String {
+        let scalar = |s: &naga::Scalar| match (s.kind, s.width) {
+            (naga::ScalarKind::Float, 4) => "f32",
+            (naga::ScalarKind::Uint, 4) => "u32",
+            _ => panic!("{s:?} has no counterpart"),
+        };
+        match &module.types[ty].inner {
+            naga::TypeInner::Scalar(s) => scalar(s).into(),
+            naga::TypeInner::Vector { size, scalar: s } => {
+                format!("[{}; {}]", scalar(s), *size as u8)
+            }
+            naga::TypeInner::Array { base, size: naga::ArraySize::Constant(size), .. } => {
+                format!("[{}; {size}]", rust_name(module, *base))
+            }
+            other => panic!("{other:?} has no counterpart"),
+        }
+    }
+
+    /// The members of a Rust struct; those after `padding` are left out. A field that is forgotten does not compile.
+    macro_rules! members {
+        ($record:expr, $type:ident { $($field:ident),* } $(padding $($padding:ident),*)?) => {{
+            let record: $type = $record;
+            let $type { $($field: _,)* $($($padding: _,)*)? } = record;
+            let member =
+                |name: &str, offset, ty: &str| (name.to_owned(), offset, ty.to_owned());
+            vec![$(member(
+                stringify!($field),
+                std::mem::offset_of!($type, $field),
+                std::any::type_name_of_val(&record.$field),
+            )),*]
+        }};
+    }
+    pub(crate) use members;
+
+    #[test]
+    fn the_uniform_is_laid_out_alike() {
+        let expected = members!(bytemuck::Zeroable::zeroed(), Uniform {
+            eye, near, right, pixel, up, disc_scale, forward, dot_radius, light, coloring, scale, ramp_low,
+            ramp_inverse, background, supersampling
+        } padding padding);
+        for name in ["splat", "resolve"] {
+            let (mut members, size) = wgsl_struct(&module(name), "View");
+            assert_eq!(members.pop().map(|m| m.0).as_deref(), Some("padding"));
+            assert_eq!(members, expected, "{name}");
+            assert_eq!(size, size_of::<Uniform>(), "{name}");
+        }
+    }
+
+    #[test]
+    fn colorings_have_the_same_numbers() {
+        let module = module("splat");
+        for (name, expected) in [
+            ("MATERIAL", MATERIAL),
+            ("PAINT", PAINT),
+            ("NORMAL", NORMAL),
+            ("DATA", DATA),
+            ("RADIUS", RADIUS),
+            ("LEVEL", LEVEL),
+        ] {
+            let mut all = module.constants.iter().map(|(_, constant)| constant);
+            let constant = all.find(|c| c.name.as_deref() == Some(name)).expect(name);
+            let found = &module.global_expressions[constant.init];
+            let expected = naga::Expression::Literal(naga::Literal::U32(expected));
+            assert_eq!(*found, expected, "{name}");
+        }
+    }
+}

@@ -154,7 +154,7 @@ fn color(text: &str) -> Result<[u8; 4], String> {
         return Ok([255, 255, 255, 0]);
     }
     let digits = text.strip_prefix('#').unwrap_or(text);
-    let value = u32::from_str_radix(digits, 16).ok().filter(|_| digits.is_ascii());
+    let value = u32::from_str_radix(digits, 16).ok().filter(|_| !digits.starts_with('+'));
     match (value, digits.len()) {
         (Some(value), 6) => Ok((value << 8 | 255).to_be_bytes()),
         (Some(value), 8) => Ok(value.to_be_bytes()),

@@ -118,6 +118,30 @@ fn errors_near_creases_are_told_from_those_elsewhere() {
 }
 
 #[test]
+fn along_a_curved_edge_each_side_keeps_its_own_normals() {
+    // A strip around a cylinder, 15° a step, and its flat top.
+    let mut mesh = scenes::grid(24, 1, |u, v| {
+        let (sine, cosine) = (u % 1.0 * std::f64::consts::TAU).sin_cos();
+        DVec3::new(cosine, sine, v)
+    });
+    let middle = mesh.len() as u32;
+    mesh.positions.push(DVec3::Z);
+    mesh.triangles.extend((25..49).map(|i| [i, i + 1, middle]));
+    let truth = scenes::truth(&mesh);
+    assert_eq!(truth.summary().sharp_edges, 24);
+    let (a, b) = (mesh.positions[25], mesh.positions[26]);
+    for share in [0.1, 0.25, 0.8] {
+        let position = a.lerp(b, share);
+        // Vertex normals are radial, and between two of them the mean by distance.
+        let round = (a.lerp(b, share) - DVec3::Z).normalize();
+        for wanted in [round, DVec3::Z] {
+            let found = truth.nearest(position, Some(wanted)).normal.unwrap();
+            assert_relative_eq!(found.dot(wanted), 1.0, epsilon = 1e-9);
+        }
+    }
+}
+
+#[test]
 fn a_truth_of_records_shows_the_side_that_was_asked_for() {
     let truth = scenes::truth(&points_of_the_cube());
     let edge = DVec3::new(1.0, 1.0, 0.5);

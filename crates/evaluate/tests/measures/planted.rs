@@ -143,3 +143,47 @@ fn clusters_are_seen_by_the_uniformity() {
     // Random points leave gaps too.
     assert_eq!(seen(&found), ["coverage", "nnCV"], "{found}");
 }
+
+#[test]
+fn gaps_along_the_surface_leave_out_how_far_a_dense_output_lies_beside_it() {
+    let scene = scene();
+    let mut lifted = scene.clean.clone();
+    for (position, normal) in lifted.positions.iter_mut().zip(scene.clean.normals.iter().flatten())
+    {
+        *position += normal.as_dvec3() * scene.spacing;
+    }
+    let lifted = scenes::measure(&lifted, &scene.truth);
+    let along = lifted.coverage.along.expect("the truth has normals");
+    assert!(lifted.coverage.over_1 > 0.3, "{lifted}");
+    assert!(along.max < 1.0 && along.over_1 == 0.0, "{lifted}");
+    // Where nothing is lifted both say the same but for the curvature.
+    let (straight, along) = (scene.before.coverage.max, scene.before.coverage.along.unwrap().max);
+    assert!((along / straight - 1.0).abs() < 0.02, "{straight} {along}");
+}
+
+#[test]
+fn gaps_along_the_surface_show_a_hole_above_another_sheet() {
+    // Two faces of a plate, half a spacing thick: points of the lower one lie under the hole in the upper one.
+    let spacing = 0.1;
+    let side = |z: f64, up: bool| {
+        let mut face = scenes::grid(20, 20, |u, v| DVec3::new(2.0 * u - 1.0, 2.0 * v - 1.0, z));
+        if !up {
+            face.triangles.iter_mut().for_each(|t| t.swap(0, 1));
+        }
+        face
+    };
+    let (mut plate, lower) = (side(0.5 * spacing, true), side(0.0, false));
+    let first = plate.len() as u32;
+    plate.positions.extend(&lower.positions);
+    plate.triangles.extend(lower.triangles.iter().map(|t| t.map(|corner| corner + first)));
+    let truth = scenes::truth(&plate);
+    let holed = |radius: f64| {
+        let kept = plate.positions.iter().copied();
+        let kept = kept.filter(|p| p.z == 0.0 || p.truncate().length() >= radius * spacing);
+        scenes::measure(&scenes::cloud(kept.collect()), &truth)
+    };
+    let (whole, hole) = (holed(0.0), holed(3.0));
+    assert!(whole.coverage.along.unwrap().max < 1.1, "{whole}");
+    assert!(hole.coverage.max < 1.1, "the lower face hides the hole from the straight measure");
+    assert!(hole.coverage.along.unwrap().max > 2.0, "{hole}");
+}

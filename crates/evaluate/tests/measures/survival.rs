@@ -77,6 +77,18 @@ fn changed_attributes_are_found() {
 }
 
 #[test]
+fn an_attribute_of_zero_with_another_sign_is_found() {
+    let (mut input, mut output) = pair();
+    input.attributes[1].values = Values::F32(vec![0.0; 50]);
+    let heat = |i: i32| if i == 20 { -0.0 } else { 0.0 };
+    output.attributes[1].values = Values::F32((0..120).map(heat).collect());
+    assert_changed(&input, &output, 20, 50);
+    input.attributes[1].values = Values::F64(vec![0.0; 50]);
+    output.attributes[1].values = Values::F64((0..120).map(|i| heat(i).into()).collect());
+    assert_changed(&input, &output, 20, 50);
+}
+
+#[test]
 fn missing_properties_are_named_and_do_not_count() {
     let (input, mut output) = pair();
     output.normals = None;

@@ -113,7 +113,9 @@ impl Canvas {
         let x = (column as f32 + 0.5) / self.columns as f32 * 2.0 - 1.0;
         let rows = (size.height * view.supersampling) as f32;
         let y = 1.0 - ((self.first_row + row) as f32 + 0.5) / rows * 2.0;
-        let normal = self.normal[i].normalize_or(-Vec3::from(view.forward));
+        let sum = self.normal[i];
+        let is_left = sum.length_squared() > 1e-5 * color.w * color.w;
+        let normal = if is_left { sum.normalize() } else { -Vec3::from(view.forward) };
         let to_eye = (-ray(view, x, y)).normalize();
         shade(view, color.truncate() / color.w, normal, to_eye).extend(1.0)
     }

@@ -1,0 +1,6 @@
+//! The program as its users run it: files in, files out, exit codes and messages.
+
+mod evaluate;
+mod folder;
+mod refine;
+mod render;

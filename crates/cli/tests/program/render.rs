@@ -1,0 +1,186 @@
+//! `surfine render`.
+
+use crate::folder::{Folder, text};
+use std::fs::File;
+use std::io::BufReader;
+
+/// A tetrahedron with outward faces.
+pub(crate) const MESH: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n\
+    property float z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n\
+    1 1 1\n1 -1 -1\n-1 1 -1\n-1 -1 1\n3 0 1 2\n3 0 3 1\n3 0 2 3\n3 1 3 2\n";
+
+/// Width, height, and the pixels of the first frame.
+fn picture(folder: &Folder, name: &str) -> (u32, u32, Vec<[u8; 4]>) {
+    let file = BufReader::new(File::open(folder.path(name)).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let frame = reader.next_frame(&mut bytes).unwrap();
+    assert_eq!(frame.color_type, png::ColorType::Rgba);
+    bytes.truncate(frame.buffer_size());
+    (frame.width, frame.height, bytes.as_chunks().0.to_vec())
+}
+
+fn render(folder: &Folder, more: &[&str]) -> String {
+    folder.succeed(&[&["render", "--backend", "cpu", "--size", "60x50"], more].concat())
+}
+
+/// Whether a pixel shows the back of a disc.
+fn is_back([r, g, b, _]: [u8; 4]) -> bool {
+    u32::from(r) > 2 * u32::from(g) && g > b
+}
+
+#[test]
+fn sphere_is_a_grey_disc_on_white() {
+    let folder = Folder::with_sample("sphere", "500");
+    let summary = render(&folder, &["in.ply", "-o", "out.png"]);
+    assert!(summary.starts_with("out.png: 60 x 50 pixels, 1 frame, 500 splats"), "{summary}");
+    let (width, height, pixels) = picture(&folder, "out.png");
+    assert_eq!((width, height), (60, 50), "one input has no caption");
+    assert_eq!(pixels[0], [255; 4]);
+    let [r, g, b, a] = pixels[25 * 60 + 30];
+    assert!(r < 250 && r.abs_diff(g) < 20 && g.abs_diff(b) < 20 && a == 255, "{r} {g} {b} {a}");
+    assert!(!pixels.iter().any(|&p| is_back(p)));
+    assert_eq!(folder.names(), ["in.ply", "out.png"]);
+}
+
+#[test]
+fn inputs_stand_side_by_side_with_captions() {
+    let folder = Folder::with_sample("torus", "300");
+    folder.refine(&[]);
+    render(&folder, &["in.ply", "out.ply", "-o", "both.png"]);
+    let (width, height, captioned) = picture(&folder, "both.png");
+    assert_eq!((width, height), (120, 50 + 28));
+    render(&folder, &["in.ply", "out.ply", "-o", "plain.png", "--no-captions"]);
+    let (width, height, plain) = picture(&folder, "plain.png");
+    assert_eq!((width, height), (120, 50));
+    assert_eq!(captioned[..plain.len()], plain);
+    render(&folder, &["in.ply", "out.ply", "-o", "c.png", "--caption", "a", "--caption", "b"]);
+    assert_ne!(picture(&folder, "c.png").2, captioned);
+    folder.fail(
+        &["render", "in.ply", "out.ply", "-o", "d.png", "--caption", "a"],
+        "1 captions for 2",
+    );
+}
+
+#[test]
+fn flipped_normals_are_orange() {
+    let folder = Folder::with_sample("sphere", "400");
+    let mut points = folder.points("in.ply");
+    points.normals.iter_mut().for_each(|n| *n = -*n);
+    let (path, source) = (folder.path("flipped.ply"), surfine_points::ply::Source::default());
+    surfine_points::ply::write(&path, &points, None, &source, Default::default()).unwrap();
+    render(&folder, &["flipped.ply", "-o", "out.png"]);
+    let (_, _, pixels) = picture(&folder, "out.png");
+    assert!(is_back(pixels[25 * 60 + 30]), "{:?}", pixels[25 * 60 + 30]);
+}
+
+#[test]
+fn views_and_cameras_differ() {
+    let folder = Folder::new();
+    // Without symmetry, so that no two sides are alike.
+    folder.succeed(&["sample", "saddle", "-n", "40", "--random", "-o", "in.ply"]);
+    let mut seen = Vec::new();
+    let views =
+        ["front", "back", "left", "right", "top", "bottom", "iso"].map(|v| vec!["--view", v]);
+    let cameras = [
+        vec!["--eye", "-3,0.5,9"],
+        vec!["--eye=-3,0.5,9", "--fit"],
+        vec!["--eye", "-3,0.5,9", "--target", "0,1,0"],
+        vec!["--eye", "-3,0.5,9", "--up", "1,0,0"],
+        vec!["--z-up", "--view", "iso"],
+        vec!["--splat-scale", "0.5"],
+        vec!["--points", "--point-size", "3"],
+        vec!["--background", "102030"],
+        vec!["--background", "none"],
+        vec!["--color", "normal"],
+        vec!["--color", "radius"],
+        vec!["--supersampling", "1"],
+    ];
+    for options in views.into_iter().chain(cameras) {
+        render(&folder, &[&["in.ply", "-o", "out.png"], &options[..]].concat());
+        let bytes = folder.bytes("out.png");
+        assert!(!seen.contains(&bytes), "{options:?} changes nothing");
+        seen.push(bytes);
+    }
+}
+
+#[test]
+fn turntables_are_animations_or_sequences() {
+    let folder = Folder::with_sample("torus", "200");
+    let turn = ["in.ply", "--turntable", "4", "--eye", "0,3,4", "--fit"];
+    render(&folder, &[&turn[..], &["-o", "turn.png", "--fps", "5"]].concat());
+    let file = BufReader::new(File::open(folder.path("turn.png")).unwrap());
+    let reader = png::Decoder::new(file).read_info().unwrap();
+    let control = reader.info().animation_control().expect("it is animated");
+    assert_eq!((control.num_frames, control.num_plays), (4, 0));
+    let frame = reader.info().frame_control().expect("the first frame is part of it");
+    assert_eq!((frame.delay_num, frame.delay_den), (1, 5));
+    render(&folder, &[&turn[..], &["-o", "turn-##.png"]].concat());
+    let names = ["in.ply", "turn-00.png", "turn-01.png", "turn-02.png", "turn-03.png", "turn.png"];
+    assert_eq!(folder.names(), names);
+    assert_ne!(folder.bytes("turn-00.png"), folder.bytes("turn-01.png"));
+    assert_eq!(picture(&folder, "turn-00.png"), picture(&folder, "turn.png"));
+}
+
+#[test]
+fn colors_come_from_properties_and_from_the_truth() {
+    let folder = Folder::with_sample("sphere", "200");
+    folder.refine(&["--provenance"]);
+    for (color, file) in [("level", "out.ply"), ("radius", "in.ply"), ("normal", "in.ply")] {
+        render(&folder, &[file, "-o", "a.png", "--color", color]);
+    }
+    render(&folder, &["in.ply", "-o", "b.png", "--color", "error", "--truth", "out.ply"]);
+    let (_, height, _) = picture(&folder, "b.png");
+    assert_eq!(height, 50 + 2 * 28, "the scale has a line of its own");
+    let fail = |color: &str, part: &str| {
+        folder.fail(&["render", "in.ply", "-o", "c.png", "--color", color], part);
+    };
+    fail("rgb", "in.ply: there are no properties red, green and blue");
+    fail("level", "--provenance");
+    fail("error", "--truth");
+}
+
+#[test]
+fn any_ply_file_can_be_looked_at() {
+    let positions = "ply\nformat ascii 1.0\nelement vertex 2\nproperty double x\nproperty double y\n\
+        property double z\nend_header\n1e6 0 0\n1000001 1 0\n";
+    let folder = Folder::with_input(positions);
+    render(&folder, &["in.ply", "-o", "out.png"]);
+    let (_, _, pixels) = picture(&folder, "out.png");
+    assert!(pixels.iter().any(|p| *p != [255; 4]), "points without normals are dots");
+    let empty = "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n\
+        property float z\nend_header\n";
+    let folder = Folder::with_input(empty);
+    render(&folder, &["in.ply", "-o", "out.png"]);
+    assert!(picture(&folder, "out.png").2.iter().all(|p| *p == [255; 4]));
+}
+
+#[test]
+fn pictures_that_cannot_be_are_refused() {
+    let folder = Folder::with_sample("sphere", "50");
+    folder.fail(&["render", "in.ply", "-o", "out.jpg"], "out.jpg: pictures are PNG");
+    folder.fail(&["render", "in.ply", "-o", "no/out.png"], "no");
+    folder.fail(&["render", "none.ply", "-o", "out.png"], "none.ply");
+    folder.fail(
+        &["render", "in.ply", "-o", "out.png", "--size", "32768x9", "--supersampling", "8"],
+        "32768",
+    );
+    std::fs::rename(folder.path("in.ply"), folder.path("in.png")).unwrap();
+    folder.fail(&["render", "in.png", "-o", "in.png"], "an input too");
+    for wrong in [
+        &["--size", "0x5"][..],
+        &["--size", "5"],
+        &["--eye", "1,2"],
+        &["--eye", "1,2,inf"],
+        &["--view", "up"],
+        &["--background", "12345"],
+        &["--background", "+1234567"],
+        &["--splat-scale", "0"],
+        &["--target", "0,0,0"],
+        &["--fps", "3"],
+        &["--view", "top", "--eye", "0,0,1"],
+    ] {
+        let output = folder.run(&[&["render", "in.png", "-o", "out.png"], wrong].concat());
+        assert_eq!(output.status.code(), Some(2), "{wrong:?}: {}", text(&output.stderr));
+    }
+}
