@@ -206,7 +206,7 @@ fn a_camera_may_look_along_its_upright() {
         assert_alike("upright", &alpha(painter.draw(&upright)), &alpha(picture));
     }
     scene.camera.up = Vec3::X;
-    fills_outline(&scene);
+    fills_outline(&scene, 0.02);
 }
 
 #[test]

@@ -95,12 +95,14 @@ fn on_nothing(points: &PointSet) -> Scene {
     Scene::new(points).style(|style| style.background = CLEAR).square(160)
 }
 
-/// Exactly the pixels of the sphere are covered. The outline of splats is off by about a pixel, which is 1.4 % here:
-/// a pixel counts as covered where a quarter of it is.
-pub(crate) fn fills_outline(scene: &Scene) {
+/// Fails unless the pixels of the unit sphere are covered and no others, but for those within this share of its radius
+/// around the outline. The sphere of 200 points after two levels has discs of up to 0.156 that stick out by 0.012, and a
+/// subpixel in a corner lies 0.35 pixels from the middle.
+#[track_caller]
+pub(crate) fn fills_outline(scene: &Scene, blur: f64) {
     check("outline", scene, |rays, ray, color| match UNIT.place(rays.eye, ray) {
-        place if place < 0.985 => color[3] == 255,
-        place if place > 1.015 => color == CLEAR,
+        place if place < 1.0 - blur => color[3] == 255,
+        place if place > 1.0 + blur => color == CLEAR,
         _ => true,
     });
 }
@@ -108,10 +110,11 @@ pub(crate) fn fills_outline(scene: &Scene) {
 #[test]
 fn a_sphere_covers_its_outline_and_no_more() {
     let scene = on_nothing(&sphere(2));
-    fills_outline(&scene);
-    // Near, where perspective is strong, and aside, where the outline is an ellipse that the picture's edge cuts.
-    fills_outline(&scene.clone().from(Vec3::new(0.0, 0.3, 4.8), Vec3::new(0.2, 0.1, 0.0)));
-    fills_outline(&scene.from(Vec3::new(-3.4, 1.7, 2.9), Vec3::new(0.6, 0.5, 0.0)));
+    fills_outline(&scene, 0.015);
+    // Near, where perspective is strong, and aside, where the outline is an ellipse that the picture's edge cuts. The
+    // radius of the sphere is 67 pixels here.
+    fills_outline(&scene.clone().from(Vec3::new(0.0, 0.3, 4.8), Vec3::new(0.2, 0.1, 0.0)), 0.02);
+    fills_outline(&scene.from(Vec3::new(-3.4, 1.7, 2.9), Vec3::new(0.6, 0.5, 0.0)), 0.02);
 }
 
 #[test]
