@@ -71,9 +71,7 @@ impl fmt::Display for Difference {
 /// They differ: by how much, and where the pictures lie.
 pub(crate) fn compare(what: &str, expected: &Picture, found: &Picture) -> Result<(), String> {
     let difference = Difference::of(expected, found);
-    if std::env::var_os("SHOW_DIFFERENCES").is_some() {
-        println!("{what}: {difference}");
-    }
+    println!("{what}: {difference}");
     if difference.is_small() {
         return Ok(());
     }
@@ -108,9 +106,7 @@ fn scene(points: &PointSet) -> Scene {
 fn assert_noticed(what: &str, other: &Scene) {
     for painter in Painter::BOTH {
         let difference = Difference::of(&painter.draw(&scene(&sphere(0))), &painter.draw(other));
-        if std::env::var_os("SHOW_DIFFERENCES").is_some() {
-            println!("{what}, {painter:?}: {difference}");
-        }
+        println!("{what}, {painter:?}: {difference}");
         assert!(!difference.is_small(), "{what}, {painter:?}: {difference}");
     }
 }

@@ -96,7 +96,7 @@ fn on_nothing(points: &PointSet) -> Scene {
 }
 
 /// Fails unless the pixels of the unit sphere are covered and no others, but for those within this share of its radius
-/// around the outline. The sphere of 200 points after two levels has discs of up to 0.156 that stick out by 0.012, and a
+/// around the outline. The sphere of 200 points after two levels has discs of up to 0.163 that stick out by 0.013, and a
 /// subpixel in a corner lies 0.35 pixels from the middle.
 #[track_caller]
 pub(crate) fn fills_outline(scene: &Scene, blur: f64) {
@@ -126,7 +126,7 @@ fn a_closed_surface_shows_no_back() {
 
 #[test]
 fn normals_are_those_of_the_sphere() {
-    // The larger part of the difference is made by the shape of the splats; bytes make 0.4 degrees of it.
+    // Measured: 3.5, where discs are largest. Bytes make 0.4 of it.
     const DEGREES: f64 = 4.0;
     let scene = on_nothing(&sphere(2)).style(|style| style.coloring = Coloring::Normal);
     check("normals", &scene, |rays, ray, [r, g, b, _]| {
@@ -262,14 +262,14 @@ fn surfaces_that_meet_blend_no_farther_than_their_splats() {
     let scene = colored(&[(1.0, left), (1.0, right)]);
     let balls = [left, right].map(|center| Ball { center: center.as_dvec3(), radius: 1.0 });
     let radius = sphere(2).radii.into_iter().fold(0.0, f32::max);
-    // Discs are pushed back by half their own radius, which is 0.65 of the point's; its other half is left for the
-    // depth by which a disc leaves the curved surface and for the width of a pixel.
-    let reach = 0.65 * f64::from(radius);
+    // Discs are pushed back by half of 0.65 of their point's radius; the rest is left for the depth by which discs leave
+    // the curved surface. Measured: 0.079 of 0.098.
+    let reach = 0.6 * 0.65 * f64::from(radius);
     check("blend", &scene, |rays, ray, [r, g, _, opacity]| {
         let hits = balls.map(|ball| ball.hit(rays.eye, ray));
         let [a, b] = hits.map(|hit| hit.unwrap_or(f64::INFINITY));
         let inside = balls.iter().any(|ball| ball.place(rays.eye, ray) < 0.985);
-        if !inside || !((a - b).abs() > reach) {
+        if !inside || (a - b).abs() <= reach {
             return true;
         }
         opacity == 255 && if a < b { r > 0 && g == 0 } else { r == 0 && g > 0 }
@@ -313,7 +313,7 @@ fn refined_points_are_drawn_from_the_device() {
 #[test]
 fn a_cloud_in_several_buffers_is_drawn_like_one() {
     // A device whose bindings hold 128 points, or 85 with colours.
-    let adapter = surfine::choose_adapter(None).unwrap();
+    let adapter = surfine::choose_adapter(None).unwrap_or_else(|e| panic!("{e}"));
     let limits =
         surfine::wgpu::Limits { max_storage_buffer_binding_size: 4096, ..adapter.limits() };
     let descriptor =

@@ -5,7 +5,7 @@
 //!
 //! `UPDATE_GOLDEN=1 cargo test --test pictures` rewrites the pictures in `tests/golden`, with the CPU. Look at them
 //! before they are committed. A picture that differs is written to the folder that the message names, beside a picture
-//! of the difference.
+//! of the difference. `-- --nocapture` shows how far apart all pictures are.
 
 mod camera;
 mod comparator;

@@ -135,7 +135,7 @@ pub(crate) mod tests {
 
     #[test]
     fn the_uniform_is_laid_out_alike() {
-        let expected = members!(bytemuck::Zeroable::zeroed(), Uniform {
+        let expected = members!(Zeroable::zeroed(), Uniform {
             eye, near, right, pixel, up, disc_scale, forward, dot_radius, light, coloring, scale, ramp_low,
             ramp_inverse, background, supersampling
         } padding padding);
