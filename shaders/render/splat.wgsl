@@ -30,7 +30,7 @@ struct Extra {
     ends: array<vec4<f32>, 2>,
     /// sRGB, red in the lowest byte.
     paint: u32,
-    /// At a crease point bit 0 and 1 tell that an end has the normal of another side, bit 2 and 3 the opposite.
+    /// Bit 0 and 1 tell that an end has the normal of another disc in the same place, bit 2 and 3 the opposite.
     sides: u32,
     padding: vec2<f32>,
 }

@@ -6,7 +6,7 @@ use crate::scenes::{CLEAR, Creases, Scene, chosen, cube, flip, moved, sphere, un
 use glam::DVec3;
 use surfine::Refiner;
 use surfine_points::shapes::{Sampling, Shape, sample};
-use surfine_points::{PointSet, RefineParams, Vec3};
+use surfine_points::{Attribute, PointSet, RefineParams, Values, Vec3};
 use surfine_render::{Camera, Coloring, DeviceSplats, Picture, cpu};
 
 /// The rays of a camera.
@@ -328,5 +328,53 @@ fn a_cloud_in_several_buffers_is_drawn_like_one() {
         let picture = small.draw(&uploaded, camera, style, *size);
         let picture = picture.unwrap_or_else(|e| panic!("{name}: {e}"));
         assert_alike(&format!("several-buffers-{name}"), &Painter::Gpu.draw(&scene), &picture);
+    }
+}
+
+/// An even lattice on the plane z = 0, with the signs of its zeros chosen by `zero`.
+fn sheet(normal: Vec3, zero: f32) -> PointSet {
+    let place = |i: i32| Vec3::new((i % 9 - 4) as f32, (i / 9 - 4) as f32, 0.0);
+    let signed = |c: f32| if c == 0.0 { zero } else { c };
+    let positions: Vec<Vec3> = (0..81).map(|i| place(i).map(signed)).collect();
+    let n = positions.len();
+    PointSet::new(positions, vec![normal; n], vec![1.8; n])
+}
+
+#[test]
+fn sheets_with_two_sides_are_whole() {
+    let look =
+        |points: &PointSet, z: f32| on_nothing(points).from(Vec3::new(5.0, 4.0, z), Vec3::ZERO);
+    let front = sheet(Vec3::Z, 0.0);
+    let records = union(&[&front, &sheet(Vec3::NEG_Z, -0.0)]);
+    let mut properties = front.clone();
+    let column = |name, value| Attribute::new(name, Values::F32(vec![value; 81]));
+    properties.attributes = vec![column("nx2", 0.0), column("ny2", 0.0), column("nz2", -1.0)];
+    for painter in Painter::BOTH {
+        for (name, both) in [("records", &records), ("properties", &properties)] {
+            let what = format!("two-sided-{name}-{}", painter.name());
+            assert_alike(
+                &what,
+                &painter.draw(&look(&front, 20.0)),
+                &painter.draw(&look(both, 20.0)),
+            );
+            let back = painter.draw(&look(&sheet(Vec3::NEG_Z, 0.0), -20.0));
+            assert_alike(&what, &back, &painter.draw(&look(both, -20.0)));
+        }
+    }
+}
+
+#[test]
+fn zeros_of_either_sign_are_one_place() {
+    let exact = cube(Creases::Records);
+    let mut signed = moved(&exact, 1.0, Vec3::new(1.0, 0.0, 0.0));
+    let expected = on_nothing(&signed).style(|style| style.coloring = Coloring::Normal);
+    for (i, position) in signed.positions.iter_mut().enumerate() {
+        if position.x == 0.0 && i % 2 == 1 {
+            position.x = -0.0;
+        }
+    }
+    let found = on_nothing(&signed).style(|style| style.coloring = Coloring::Normal);
+    for painter in Painter::BOTH {
+        assert_alike("zeros", &painter.draw(&expected), &painter.draw(&found));
     }
 }

@@ -10,7 +10,8 @@ use glam::Vec3;
 use std::collections::HashMap;
 use surfine_points::{Grid, GridShape, PointSet, Values};
 
-/// Records of one position are sides of a crease if their normals differ by more than this cosine says.
+/// Normals of one position are sides of a crease if they differ by more than this cosine says. Opposite ones are no
+/// crease: a sheet with two sides goes on beyond the point.
 const ONE_SIDE: f32 = 0.98;
 
 /// The sides of one crease point.
@@ -23,12 +24,19 @@ struct Crease {
 
 /// Adds the discs of further normals, and gives discs at creases their ends.
 pub(crate) fn cut(points: &PointSet, splats: &mut Splats) {
-    let mut creases = further_normals(points, splats);
-    creases.extend(shared_positions(points, splats));
-    if creases.is_empty() {
+    let mut sides = further_normals(points, splats);
+    sides.extend(shared_positions(points));
+    sides.retain(|sides| sides.iter().all(|side| side.1 != Vec3::ZERO));
+    if sides.is_empty() {
         return;
     }
     splats.extras.resize(splats.points.len(), Extra::default());
+    sides.iter().for_each(|sides| hide_backs(sides, splats));
+    sides.retain(|sides| is_crease(sides));
+    let creases: Vec<Crease> = sides.into_iter().map(|sides| Crease::new(splats, sides)).collect();
+    if creases.is_empty() {
+        return;
+    }
     let positions: Vec<Vec3> = splats.points.iter().map(|p| p.position.into()).collect();
     let radii: Vec<f32> = splats.points.iter().map(|p| p.radius).collect();
     let grid = Grid::build(GridShape::fit(&positions, &radii), (0u32..).zip(positions));
@@ -37,27 +45,30 @@ pub(crate) fn cut(points: &PointSet, splats: &mut Splats) {
         is_smooth[disc] = false;
     }
     // Sides have fixed places: other ends must find them there.
-    let mut planes = Vec::new();
     for crease in &creases {
-        let near = crease.neighbors(&grid, splats, &is_smooth);
-        for (k, &(disc, _)) in crease.sides.iter().enumerate() {
-            for (i, other) in crease.others(k).enumerate() {
-                let (normal, is_concave) =
-                    (crease.sides[other].1, crease.is_concave(&near, k, other));
-                splats.extras[disc].end_at_side(i, normal, is_concave);
-                let end = if is_concave { -normal } else { normal };
-                for neighbor in near.iter().filter(|neighbor| neighbor.side == k) {
-                    let place = -end.dot(neighbor.offset);
-                    // A neighbour beyond the plane tells that the surface turns: a flat cut would be wrong.
-                    if (0.0..SOFT * splats.points[neighbor.disc].radius).contains(&place) {
-                        let distance = neighbor.offset.length();
-                        planes.push((neighbor.disc, end, place, distance));
-                    }
-                }
-            }
+        let near = crease.neighbors(&grid, splats);
+        crease.end_sides(&near, &is_smooth, splats);
+    }
+    for crease in &creases {
+        let near = crease.neighbors(&grid, splats);
+        crease.end_neighbors(&near, splats);
+    }
+}
+
+/// Whether no two normals are alike or opposite.
+fn is_crease(sides: &[(usize, Vec3)]) -> bool {
+    let differ = |i: usize, j: usize| sides[i].1.dot(sides[j].1).abs() < ONE_SIDE;
+    (1..sides.len()).all(|i| (0..i).all(|j| differ(i, j)))
+}
+
+/// Of two opposite discs in one place only that which shows its front is drawn.
+fn hide_backs(sides: &[(usize, Vec3)], splats: &mut Splats) {
+    for &(disc, normal) in sides {
+        let opposite = sides.iter().find(|other| other.1.dot(normal) <= -ONE_SIDE);
+        if let Some(&(_, other)) = opposite {
+            splats.extras[disc].hide_behind(other);
         }
     }
-    planes.into_iter().for_each(|(i, end, at, far)| splats.extras[i].end_at_plane(end, at, far));
 }
 
 /// A disc near a crease point.
@@ -67,8 +78,6 @@ struct Neighbor {
     offset: Vec3,
     /// The side of the crease that it belongs to.
     side: usize,
-    /// Whether it belongs to no crease itself.
-    is_smooth: bool,
 }
 
 impl Crease {
@@ -77,8 +86,35 @@ impl Crease {
         Self { position: point.position.into(), radius: point.radius, sides }
     }
 
+    /// Ends each side's disc at the others.
+    fn end_sides(&self, near: &[Neighbor], is_smooth: &[bool], splats: &mut Splats) {
+        for (k, &(disc, _)) in self.sides.iter().enumerate() {
+            for (i, other) in self.others(k).enumerate() {
+                // The smooth neighbours tell.
+                let smooth = near.iter().filter(|neighbor| is_smooth[neighbor.disc]);
+                let is_concave = self.is_concave(smooth, k, other);
+                splats.extras[disc].end_at_side(i, self.sides[other].1, is_concave);
+            }
+        }
+    }
+
+    /// Ends the discs around where those of their side end.
+    fn end_neighbors(&self, near: &[Neighbor], splats: &mut Splats) {
+        for neighbor in near {
+            let side = splats.extras[self.sides[neighbor.side].0];
+            for end in side.ends[..self.sides.len() - 1].iter().map(|end| Vec3::from_slice(end)) {
+                let place = -end.dot(neighbor.offset);
+                // A neighbour beyond the plane tells that the surface turns: a flat cut would be wrong.
+                if (0.0..SOFT * splats.points[neighbor.disc].radius).contains(&place) {
+                    let distance = neighbor.offset.length();
+                    splats.extras[neighbor.disc].end_at_plane(end, place, distance);
+                }
+            }
+        }
+    }
+
     /// The discs within the radius, but those of the point itself.
-    fn neighbors(&self, grid: &Grid, splats: &Splats, is_smooth: &[bool]) -> Vec<Neighbor> {
+    fn neighbors(&self, grid: &Grid, splats: &Splats) -> Vec<Neighbor> {
         let mut near = Vec::new();
         grid.visit_ball(self.position, self.radius, |j| {
             let disc = j as usize;
@@ -86,7 +122,7 @@ impl Crease {
             let offset = Vec3::from(point.position) - self.position;
             if offset != Vec3::ZERO && offset.length() <= self.radius {
                 let side = self.side_of(point.normal.into());
-                near.push(Neighbor { disc, offset, side, is_smooth: is_smooth[disc] });
+                near.push(Neighbor { disc, offset, side });
             }
         });
         near
@@ -103,20 +139,25 @@ impl Crease {
         (0..self.sides.len()).filter(move |&other| other != k)
     }
 
-    /// Whether the smooth neighbours of a side lie above the plane of another.
-    fn is_concave(&self, near: &[Neighbor], k: usize, other: usize) -> bool {
-        let of_side = near.iter().filter(|neighbor| neighbor.is_smooth && neighbor.side == k);
+    /// Whether those of the discs that belong to a side lie above the plane of another.
+    fn is_concave<'a>(
+        &self,
+        discs: impl Iterator<Item = &'a Neighbor>,
+        k: usize,
+        other: usize,
+    ) -> bool {
+        let of_side = discs.filter(|neighbor| neighbor.side == k);
         let above = |n: &Neighbor| n.offset.normalize_or_zero().dot(self.sides[other].1);
         of_side.map(above).sum::<f32>() > 0.0
     }
 }
 
 /// Points with further normals; each gets a disc at the end.
-fn further_normals(points: &PointSet, splats: &mut Splats) -> Vec<Crease> {
+fn further_normals(points: &PointSet, splats: &mut Splats) -> Vec<Vec<(usize, Vec3)>> {
     let columns = [["nx2", "ny2", "nz2"], ["nx3", "ny3", "nz3"]];
     let columns: Vec<[&[f32]; 3]> =
         columns.iter().filter_map(|names| vector_column(points, names)).collect();
-    let mut creases = Vec::new();
+    let mut all = Vec::new();
     for i in 0..points.len() {
         let normal = |c: &[&[f32]; 3]| Vec3::new(c[0][i], c[1][i], c[2][i]).normalize_or_zero();
         let further = columns.iter().map(normal).filter(|n| *n != Vec3::ZERO);
@@ -126,10 +167,10 @@ fn further_normals(points: &PointSet, splats: &mut Splats) -> Vec<Crease> {
             splats.push_copy(i, normal);
         }
         if sides.len() > 1 {
-            creases.push(Crease::new(splats, sides));
+            all.push(sides);
         }
     }
-    creases
+    all
 }
 
 fn vector_column<'a>(points: &'a PointSet, names: &[&str; 3]) -> Option<[&'a [f32]; 3]> {
@@ -140,20 +181,15 @@ fn vector_column<'a>(points: &'a PointSet, names: &[&str; 3]) -> Option<[&'a [f3
     Some([column(names[0])?, column(names[1])?, column(names[2])?])
 }
 
-/// Two or three records of one position with different normals.
-fn shared_positions(points: &PointSet, splats: &Splats) -> Vec<Crease> {
-    let key = |i: usize| points.positions[i].to_array().map(f32::to_bits);
+/// Two or three records of one position.
+fn shared_positions(points: &PointSet) -> Vec<Vec<(usize, Vec3)>> {
+    // Adding zero makes one zero of the two.
+    let key = |i: usize| (points.positions[i] + 0.0).to_array().map(f32::to_bits);
     let mut groups: HashMap<_, Vec<usize>> = HashMap::new();
     (0..points.len()).for_each(|i| groups.entry(key(i)).or_default().push(i));
     let mut groups: Vec<Vec<usize>> =
         groups.into_values().filter(|group| (2..=3).contains(&group.len())).collect();
     groups.sort_unstable();
-    let differ = |group: &[usize]| {
-        let normal = |i: usize| points.normals[group[i]];
-        (1..group.len()).all(|i| (0..i).all(|j| normal(i).dot(normal(j)) < ONE_SIDE))
-    };
-    let crease = |group: Vec<usize>| {
-        Crease::new(splats, group.into_iter().map(|i| (i, points.normals[i])).collect())
-    };
-    groups.into_iter().filter(|group| differ(group)).map(crease).collect()
+    let sides = |group: Vec<usize>| group.into_iter().map(|i| (i, points.normals[i])).collect();
+    groups.into_iter().map(sides).collect()
 }

@@ -16,6 +16,9 @@ pub struct Splats {
     pub(crate) extras: Vec<Extra>,
 }
 
+/// Farther than any disc reaches.
+const NOWHERE: f32 = 1e30;
+
 /// What a disc may have beyond the record of the engine: mirror of `Extra` in `shaders/render/splat.wgsl`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -25,7 +28,7 @@ pub(crate) struct Extra {
     pub(crate) ends: [[f32; 4]; 2],
     /// Colour for [`Coloring::Paint`](crate::Coloring::Paint).
     pub(crate) paint: u32,
-    /// At a crease point bit 0 and 1 tell that an end has the normal of another side, bit 2 and 3 the opposite.
+    /// Bit 0 and 1 tell that an end has the normal of another disc in the same place, bit 2 and 3 the opposite.
     pub(crate) sides: u32,
     /// How far the creases of the ends are.
     distances: [f32; 2],
@@ -38,6 +41,12 @@ impl Extra {
         let direction = if is_concave { -normal } else { normal };
         self.ends[i] = direction.extend(0.0).to_array();
         self.sides |= if is_concave { 4 } else { 1 } << i;
+    }
+
+    /// Hides the disc where another in the same place, which looks the opposite way, shows its front. It ends nowhere.
+    pub(crate) fn hide_behind(&mut self, normal: Vec3) {
+        self.ends[1] = normal.extend(NOWHERE).to_array();
+        self.sides |= 2;
     }
 
     /// Ends the disc of a smooth point at a plane: its direction, its distance from the centre, and that of the crease
