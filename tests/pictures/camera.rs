@@ -34,9 +34,8 @@ fn everything_fits_into_the_picture_and_fills_it() {
     for view in View::ALL {
         for aspect in [0.3, 0.7, 1.0, 1.6, 3.0] {
             for fov in [0.1, Camera::FOV, 1.5] {
-                let start =
-                    Camera { eye: view.direction(), target: Vec3::ZERO, up: view.up(), fov };
-                let camera = start.fit(corners(), aspect);
+                let start = Camera::look(corners(), view.direction(), view.up(), aspect);
+                let camera = Camera { fov, ..start }.fit(corners(), aspect);
                 let places = corners().flat_map(|point| project(&camera, aspect, point));
                 let largest = places.map(f64::abs).fold(0.0, f64::max);
                 assert!(FILLED.contains(&largest), "{view} {aspect} {fov}: {largest}");
@@ -79,21 +78,47 @@ fn one_point_and_none_can_be_looked_at() {
 }
 
 #[test]
+fn fit_keeps_the_target() {
+    let target = Vec3::new(9.0, -3.0, 4.0);
+    let start = Camera { eye: target + 3.0 * Vec3::Z, target, up: Vec3::Y, fov: 0.7 };
+    let camera = start.fit(corners(), 1.0);
+    assert_eq!((camera.target, camera.up, camera.fov), (target, Vec3::Y, 0.7));
+    assert!((camera.eye - target).normalize().abs_diff_eq(Vec3::Z, 1e-6));
+    let places = corners().flat_map(|point| project(&camera, 1.0, point));
+    let largest = places.map(f64::abs).fold(0.0, f64::max);
+    assert!(FILLED.contains(&largest), "{largest}");
+}
+
+#[test]
 fn orbits_close() {
     let camera = Camera::look(corners(), View::Iso.direction(), Vec3::Y, 1.0);
     let (distance, offset) = (camera.distance(), camera.eye - camera.target);
     // The sine of 2π in f32 is 2e-7.
     let near = 1e-5 * distance;
-    assert!(camera.orbit(TAU).eye.abs_diff_eq(camera.eye, near));
-    let steps = (0..12).fold(camera, |camera, _| camera.orbit(TAU / 12.0));
+    let orbit = |camera: Camera, angle| camera.orbit(Vec3::Y, angle);
+    assert!(orbit(camera, TAU).eye.abs_diff_eq(camera.eye, near));
+    let steps = (0..12).fold(camera, |camera, _| orbit(camera, TAU / 12.0));
     assert!(steps.eye.abs_diff_eq(camera.eye, near));
-    let opposite = camera.orbit(PI);
+    let opposite = orbit(camera, PI);
     let turned = camera.target + offset * Vec3::new(-1.0, 1.0, -1.0);
     assert!(opposite.eye.abs_diff_eq(turned, near), "{opposite:?}");
     assert_eq!((opposite.target, opposite.up), (camera.target, camera.up));
     // Anticlockwise from above: from the front to the right.
     let front = Camera { eye: Vec3::Z, target: Vec3::ZERO, ..camera };
-    assert!(front.orbit(0.5 * PI).eye.abs_diff_eq(Vec3::X, 1e-6));
+    assert!(orbit(front, 0.5 * PI).eye.abs_diff_eq(Vec3::X, 1e-6));
+    // From above the picture turns.
+    let above = Camera { eye: Vec3::Y, up: Vec3::NEG_Z, ..front };
+    let turned = orbit(above, 0.5 * PI);
+    assert!(turned.eye.abs_diff_eq(Vec3::Y, 1e-6) && turned.up.abs_diff_eq(Vec3::NEG_X, 1e-6));
+}
+
+#[test]
+fn an_upright_direction_is_needed() {
+    let camera = Camera::look(corners(), Vec3::Z, Vec3::Y, 1.0);
+    assert!(camera.is_upright());
+    for up in [Vec3::ZERO, Vec3::Z, -3.0 * Vec3::Z, Vec3::new(0.0, 1e-5, 1.0)] {
+        assert!(!Camera { up, ..camera }.is_upright(), "{up}");
+    }
 }
 
 #[test]

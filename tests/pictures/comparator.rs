@@ -126,7 +126,7 @@ fn flipped_normals_are_noticed() {
 #[test]
 fn a_turned_camera_is_noticed() {
     let mut turned = scene(&sphere(0));
-    turned.camera = turned.camera.orbit(3f32.to_radians());
+    turned.camera = turned.camera.orbit(Vec3::Y, 3f32.to_radians());
     assert_noticed("turned camera", &turned);
 }
 

@@ -4,8 +4,8 @@ use crate::comparator::assert_alike;
 use crate::geometry::fills_outline;
 use crate::painters::Painter;
 use crate::scenes::{CLEAR, Scene, moved, one_point, sphere};
-use surfine_points::{PointSet, Vec3};
-use surfine_render::{Camera, Coloring, Error, Size};
+use surfine_points::{DVec3, PointSet, Vec3};
+use surfine_render::{Camera, Coloring, Error, Size, Space};
 
 /// A square picture with a transparent ground, seen from +z at distance 4: one pixel in the middle.
 fn scene(points: &PointSet) -> Scene {
@@ -237,5 +237,37 @@ fn the_unit_of_length_does_not_show() {
         for scale in [1e6, 1e-6] {
             assert_alike(&format!("scale {scale}"), &one, &draw(painter, scale));
         }
+    }
+}
+
+#[test]
+fn far_and_tiny_clouds_have_a_space() {
+    let points = sphere(1);
+    let draw = |painter: Painter, scale: f32, origin: f64| {
+        let mut points = moved(&points, scale, Vec3::ZERO);
+        points.origin = DVec3::splat(origin);
+        let space = Space::around([&points]);
+        painter.draw(&Scene::in_space(&points, space, None).style(|style| {
+            let [low, high] = [0.05, 0.2].map(|radius| space.length(scale * radius));
+            style.coloring = Coloring::Radius { low, high };
+        }))
+    };
+    for painter in Painter::BOTH {
+        let one = draw(painter, 1.0, 0.0);
+        for (scale, origin) in
+            [(1e15, 0.0), (1e12, 1e14), (1e-15, 0.0), (1e-22, 0.0), (1.0, 4_194_305.0)]
+        {
+            assert_alike(&format!("space {scale}"), &one, &draw(painter, scale, origin));
+        }
+    }
+}
+
+#[test]
+fn a_far_target_hides_nothing() {
+    let points = sphere(1);
+    for painter in Painter::BOTH {
+        let [near, far] = [-1.0, -5000.0]
+            .map(|z| painter.draw(&scene(&points).from(5.0 * Vec3::Z, Vec3::new(0.0, 0.0, z))));
+        assert_alike("far target", &near, &far);
     }
 }

@@ -1,8 +1,8 @@
 //! Clouds, and what is seen of them.
 
 use surfine_points::shapes::{Sampling, Shape, sample};
-use surfine_points::{Attribute, DVec3, PointSet, RefineParams, Refined, Values, Vec3};
-use surfine_render::{Camera, Size, Splats, Style, View};
+use surfine_points::{Attribute, PointSet, RefineParams, Refined, Values, Vec3};
+use surfine_render::{Camera, Size, Space, Splats, Style, View};
 
 /// Everything that makes a picture.
 #[derive(Clone)]
@@ -23,8 +23,12 @@ impl Scene {
     }
 
     pub(crate) fn painted(points: &PointSet, paint: Option<&[[u8; 3]]>) -> Self {
+        Self::in_space(points, Space::default(), paint)
+    }
+
+    pub(crate) fn in_space(points: &PointSet, space: Space, paint: Option<&[[u8; 3]]>) -> Self {
         let size = Size { width: 160, height: 120 };
-        let splats = Splats::new(points, DVec3::ZERO, paint);
+        let splats = Splats::new(points, space, paint);
         let view = View::Iso;
         let camera = Camera::look(splats.outline(1.0), view.direction(), view.up(), size.aspect());
         Self { splats, camera, style: Style::default(), size }

@@ -9,7 +9,7 @@ use serde::Serialize;
 use std::path::Path;
 use surfine_evaluate::{Evaluation, Options, Truth, errors, evaluate};
 use surfine_points::{Model, ply};
-use surfine_render::{Camera, Caption, Coloring, Splats, Style};
+use surfine_render::{Camera, Caption, Coloring, Space, Splats, Style};
 
 pub(crate) fn run(args: &EvaluateArgs) -> Result<(), Failure> {
     if let Some(path) = &args.heatmap {
@@ -101,7 +101,7 @@ fn draw_heatmap(
     let largest = errors.iter().copied().fold(0.0, f64::max);
     let high = args.max.map_or(largest, f64::from);
     let (points, _) = output.to_points();
-    let splats = Splats::new(&points, points.origin, Some(&heat(&errors, high)));
+    let splats = Splats::new(&points, Space::around([&points]), Some(&heat(&errors, high)));
     let seen = splats.outline(1.0);
     let camera = Camera::look(seen, args.view.direction(), args.view.up(), args.size.aspect());
     let painter = Painter::new(args.backend, None, watch)?;

@@ -8,7 +8,9 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 use surfine::Vec3;
 use surfine_points::{DVec3, Model, PointSet, Values, ply};
-use surfine_render::{Camera, Caption, Coloring, Picture, Splats, Style, ramp, write_animation};
+use surfine_render::{
+    Camera, Caption, Coloring, Picture, Space, Splats, Style, ramp, write_animation,
+};
 
 pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let frames = frame_paths(args)?;
@@ -109,18 +111,24 @@ struct Scene {
 
 impl Scene {
     fn new(args: &RenderArgs, clouds: Vec<Cloud>, watch: &Watch) -> Result<Self, Failure> {
-        let center = clouds[0].points.origin;
+        let space = Space::around(clouds.iter().map(|cloud| &cloud.points));
         let paint = Paint::new(args, &clouds, watch)?;
         let captions = clouds.iter().enumerate().map(|(i, cloud)| paint.caption(args, i, cloud));
         let captions: Vec<Option<Caption>> = captions.collect();
         let splats = clouds.iter().enumerate().map(|(i, cloud)| {
             let colors = paint.colors.get(i).map(Vec::as_slice);
-            Splats::new(&cloud.points, center, colors)
+            Splats::new(&cloud.points, space, colors)
         });
         let splats: Vec<Splats> = splats.collect();
-        let cameras = cameras(args, center, &splats);
+        let cameras = cameras(args, space, &splats)?;
+        let coloring = match paint.coloring {
+            Coloring::Radius { low, high } => {
+                Coloring::Radius { low: space.length(low), high: space.length(high) }
+            }
+            other => other,
+        };
         let style = Style {
-            coloring: paint.coloring,
+            coloring,
             splat_scale: args.splat_scale,
             dots: args.points.then_some(args.point_size),
             background: args.background,
@@ -171,36 +179,56 @@ pub(crate) fn heat_scale(high: f64) -> [String; 2] {
 }
 
 /// The camera of each frame.
-fn cameras(args: &RenderArgs, center: DVec3, splats: &[Splats]) -> Vec<Camera> {
+fn cameras(args: &RenderArgs, space: Space, splats: &[Splats]) -> Result<Vec<Camera>, Failure> {
     let aspect = args.size.aspect();
     let scale = if args.points { 0.0 } else { args.splat_scale };
     let seen = splats.iter().flat_map(|s| s.outline(scale));
-    let up = args.up.map(DVec3::as_vec3);
-    let local = |place: DVec3| (place - center).as_vec3();
-    let camera = match args.eye {
-        Some(eye) => {
-            let up = up.unwrap_or(Vec3::Y);
-            let middle = Camera::look(seen.clone(), Vec3::Z, up, aspect).target;
-            let target = args.target.map_or(middle, local);
-            let camera = Camera { eye: local(eye), target, up, fov: Camera::FOV };
-            if args.fit { camera.fit(seen.clone(), aspect) } else { camera }
-        }
-        None => {
-            let turned = |v: Vec3| if args.z_up { Vec3::new(v.x, -v.z, v.y) } else { v };
-            let up = up.unwrap_or(turned(args.view.up()));
-            Camera::look(seen.clone(), turned(args.view.direction()), up, aspect)
-        }
-    };
-    let Some(frames) = args.turntable else { return vec![camera] };
-    let turn = |i| camera.orbit(std::f32::consts::TAU * i as f32 / frames as f32);
+    let camera = first_camera(args, space, seen.clone())?;
+    let Some(frames) = args.turntable else { return Ok(vec![camera]) };
+    let axis = if args.z_up { Vec3::Z } else { args.up.map_or(Vec3::Y, unit) };
+    let turn = |i| camera.orbit(axis, std::f32::consts::TAU * i as f32 / frames as f32);
     let around: Vec<Camera> = (0..frames).map(turn).collect();
     if args.eye.is_some() && !args.fit {
-        return around;
+        return Ok(around);
     }
     // One distance for all frames: the cloud must not breathe.
     let needed = around.iter().map(|c| c.fit(seen.clone(), aspect).distance());
     let distance = needed.fold(0.0, f32::max);
-    around.into_iter().map(|c| c.with_distance(camera.target, distance)).collect()
+    Ok(around.into_iter().map(|c| c.with_distance(camera.target, distance)).collect())
+}
+
+/// The camera that the arguments ask for.
+fn first_camera(
+    args: &RenderArgs,
+    space: Space,
+    seen: impl Iterator<Item = Vec3> + Clone,
+) -> Result<Camera, Failure> {
+    let aspect = args.size.aspect();
+    let turned = |v: Vec3| if args.z_up { Vec3::new(v.x, -v.z, v.y) } else { v };
+    let up = args.up.map_or(turned(args.view.up()), unit);
+    let looked = Camera::look(seen.clone(), turned(args.view.direction()), up, aspect);
+    let camera = match args.eye.map(|eye| space.place(eye)) {
+        None => looked,
+        Some(eye) => {
+            let target = args.target.map_or(looked.target, |target| space.place(target));
+            if eye == target {
+                let remedy = "--eye is the place that the camera looks at: move it, or give another --target";
+                return Err(Failure(remedy.into()));
+            }
+            let camera = Camera { eye, target, ..looked };
+            if args.fit { camera.fit(seen, aspect) } else { camera }
+        }
+    };
+    if camera.is_upright() {
+        return Ok(camera);
+    }
+    let remedy = "what is upright in the picture lies along the line of sight: give another direction with --up";
+    Err(Failure(remedy.into()))
+}
+
+/// A direction of any length.
+fn unit(direction: DVec3) -> Vec3 {
+    direction.normalize_or_zero().as_vec3()
 }
 
 /// What the colours show.

@@ -218,8 +218,12 @@ fn natural_radii_once(positions: &[Vec3], normals: &[Vec3]) -> Vec<f32> {
         })
     };
     let indices: Vec<usize> = positions.iter().zip(normals).map(&mut place).collect();
+    // A power of two brings the cloud to a size of about 1: products of its coordinates stay floats, no digit is lost.
+    let scale = places.iter().map(|p| p.abs().max_element()).fold(0.0, f32::max);
+    let scale = if scale > 0.0 { (-f64::from(scale).log2().floor()).exp2() } else { 1.0 };
+    places.iter_mut().for_each(|p| *p = (p.as_dvec3() * scale).as_vec3());
     let radii = natural_radii(&places, &directions);
-    indices.into_iter().map(|index| radii[index]).collect()
+    indices.into_iter().map(|index| (f64::from(radii[index]) / scale) as f32).collect()
 }
 
 /// The centre of a bounding box, rounded to about the size of the box, on the axes that `wanted` names; 0 on the others

@@ -606,3 +606,19 @@ fn the_test_data_can_be_looked_at() {
         }
     }
 }
+
+#[test]
+fn radii_are_made_in_any_unit() {
+    let one = shapes::sample(Shape::Sphere, Sampling::BlueNoise, 200, 1);
+    let radii = |scale: f64| {
+        let positions = one.positions.iter().map(|p| scale * p.as_dvec3()).collect();
+        let model = Model { positions, normals: Some(one.normals.clone()), ..Model::default() };
+        model.to_points().0.radii
+    };
+    for scale in [1e-22, 1e-12, 1e15] {
+        for (found, expected) in radii(scale).iter().zip(radii(1.0)) {
+            let ratio = f64::from(*found) / scale / f64::from(expected);
+            assert!((ratio - 1.0).abs() < 1e-5, "{scale}: {found} of {expected}");
+        }
+    }
+}

@@ -10,11 +10,12 @@ const MARGIN: f32 = 1.03;
 /// A perspective camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Where it stands.
+    /// Where it stands: not at the target, or it looks along −z.
     pub eye: Vec3,
     /// The middle of the picture.
     pub target: Vec3,
-    /// A direction that is upright in the picture; any length, not along the line of sight.
+    /// A direction that is upright in the picture; any length. If it is zero or along the line of sight, any direction
+    /// may be upright.
     pub up: Vec3,
     /// Angle between the lower and the upper edge of the picture, radians.
     pub fov: f32,
@@ -115,31 +116,27 @@ impl Camera {
         up: Vec3,
         aspect: f32,
     ) -> Self {
+        let (low, high) = bounds(positions.clone()).unwrap_or_default();
+        let target = low + 0.5 * (high - low);
+        // From zero first, so that the direction loses no digits.
         let camera = Self { eye: direction, target: Vec3::ZERO, up, fov: Self::FOV };
-        camera.fit(positions, aspect)
+        let distance = camera.fit(positions.map(|p| p - target), aspect).distance();
+        camera.with_distance(target, distance)
     }
 
-    /// The same direction towards the middle of these positions, from as far as it takes to see all of them.
+    /// The same direction towards the same target, from as far as it takes to see all of these positions.
     #[must_use]
     pub fn fit(self, positions: impl Iterator<Item = Vec3> + Clone, aspect: f32) -> Self {
-        let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        let grown = |(low, high): (Vec3, Vec3), p| (low.min(p), high.max(p));
-        let (low, high) = positions.clone().fold(none, grown);
-        let (target, size) = if low.x <= high.x {
-            (0.5 * (low + high), (high - low).length())
-        } else {
-            (Vec3::ZERO, 1.0)
-        };
         let [right, up, forward] = self.axes();
         let rise = MARGIN / (0.5 * self.fov).tan();
         let needed = |p: Vec3| {
-            let p = p - target;
+            let p = p - self.target;
             (rise * p.dot(up).abs()).max(rise / aspect * p.dot(right).abs()) - p.dot(forward)
         };
+        let size = bounds(positions.clone()).map_or(0.0, |(low, high)| low.distance(high));
         // Points in one place have no size: then any distance will do.
         let least = if size > 0.0 { 0.1 * size } else { 1.0 };
-        let distance = positions.map(needed).fold(least, f32::max);
-        self.with_distance(target, distance)
+        self.with_distance(self.target, positions.map(needed).fold(least, f32::max))
     }
 
     /// The same direction towards a target, from a distance.
@@ -154,11 +151,20 @@ impl Camera {
         self.eye.distance(self.target)
     }
 
-    /// Goes around the target by an angle in radians, about the upright direction.
+    /// Goes around an axis through the target by an angle in radians, anticlockwise seen from the axis's tip. What is
+    /// upright turns with it, so that only the cloud seems to turn.
     #[must_use]
-    pub fn orbit(self, angle: f32) -> Self {
-        let turn = glam::Quat::from_axis_angle(self.up.normalize_or(Vec3::Y), angle);
-        Self { eye: self.target + turn * (self.eye - self.target), ..self }
+    pub fn orbit(self, axis: Vec3, angle: f32) -> Self {
+        let turn = glam::Quat::from_axis_angle(axis.normalize_or(Vec3::Y), angle);
+        let eye = self.target + turn * (self.eye - self.target);
+        Self { eye, up: turn * self.up, ..self }
+    }
+
+    /// Whether [`Camera::up`] tells what is upright: it is not zero and not along the line of sight.
+    pub fn is_upright(&self) -> bool {
+        let forward = (self.target - self.eye).normalize_or_zero();
+        // A thousandth of a radian: the direction of less is mostly rounding.
+        forward.cross(self.up.normalize_or_zero()).length() > 1e-3
     }
 
     /// The unit vectors to the right, upwards and forward.
@@ -167,4 +173,9 @@ impl Camera {
         let right = forward.cross(self.up).normalize_or(forward.any_orthonormal_vector());
         [right, right.cross(forward), forward]
     }
+}
+
+/// The corners of the box around some positions; `None` without any.
+fn bounds(positions: impl Iterator<Item = Vec3>) -> Option<(Vec3, Vec3)> {
+    positions.map(|p| (p, p)).reduce(|(low, high), (p, _)| (low.min(p), high.max(p)))
 }

@@ -5,6 +5,7 @@ use crate::splats::Extra;
 use crate::style::{SOFT, SOLID, packed_ramp};
 use crate::view::Uniform;
 use crate::{Camera, Error, Picture, Size, Splats, Style};
+use glam::Vec3;
 use surfine::records::Point;
 use surfine::{Gpu, GpuRefined, wgpu};
 
@@ -47,6 +48,8 @@ pub struct Renderer {
 #[derive(Clone, Debug, Default)]
 pub struct DeviceSplats {
     parts: Vec<Part>,
+    /// Corners of a box around them, if it is known.
+    bounds: Option<[Vec3; 2]>,
 }
 
 /// As many points as one buffer holds.
@@ -58,11 +61,12 @@ struct Part {
 }
 
 impl From<&GpuRefined> for DeviceSplats {
-    /// The engine's own buffer: nothing is copied.
+    /// The engine's own buffer: nothing is copied. The camera and the radii of a style have the coordinates of these
+    /// points. What is nearer to the eye than 1e-5 of the distance to the camera's target is not seen.
     fn from(refined: &GpuRefined) -> Self {
         let count = refined.len() as u32;
         let part = Part { points: refined.points.clone(), extras: None, count };
-        Self { parts: if count > 0 { vec![part] } else { Vec::new() } }
+        Self { parts: if count > 0 { vec![part] } else { Vec::new() }, bounds: None }
     }
 }
 
@@ -112,7 +116,7 @@ impl Renderer {
                 })
                 .collect())
         });
-        Ok(DeviceSplats { parts: parts? })
+        Ok(DeviceSplats { parts: parts?, bounds: splats.bounds })
     }
 
     /// Draws points and reads the picture back.
@@ -144,7 +148,7 @@ impl Renderer {
     ) -> Result<wgpu::Texture, Error> {
         let limit = self.gpu.device.limits().max_texture_dimension_2d;
         size.check(style.supersampling, limit)?;
-        let view = Uniform::new(camera, style, size);
+        let view = Uniform::new(camera, style, size, splats.bounds);
         let submitted = self.gpu.guarded(|| {
             let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
             let picture = self.record(&mut encoder, splats, &view, size);

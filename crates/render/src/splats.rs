@@ -1,9 +1,9 @@
 //! The points of a picture.
 
-use crate::creases;
 use crate::style::{SOLID, pack};
+use crate::{Space, creases};
 use bytemuck::{Pod, Zeroable};
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use surfine::records::Point;
 use surfine_points::{PointSet, Values};
 
@@ -11,9 +11,11 @@ use surfine_points::{PointSet, Values};
 #[derive(Clone, Debug, Default)]
 pub struct Splats {
     /// One record a disc.
-    pub points: Vec<Point>,
+    pub(crate) points: Vec<Point>,
     /// One a point, or none.
     pub(crate) extras: Vec<Extra>,
+    /// Corners of a box around all discs, if there are any.
+    pub(crate) bounds: Option<[Vec3; 2]>,
 }
 
 /// Farther than any disc reaches.
@@ -65,7 +67,8 @@ impl Extra {
 }
 
 impl Splats {
-    /// The points of a cloud, relative to `center`: pictures of clouds with different origins need the same one.
+    /// The points of a cloud in a space, that of the camera: [`Space::around`] makes one. The values of
+    /// [`Coloring::Radius`](crate::Coloring::Radius) are lengths in it too.
     ///
     /// A point without a normal (zero) or a radius is drawn as a dot. `paint` gives each point a colour for
     /// [`Coloring::Paint`](crate::Coloring::Paint). An attribute `level` gives the levels, as
@@ -74,18 +77,17 @@ impl Splats {
     ///
     /// # Panics
     /// If the columns of the cloud or the paint have other lengths than the positions.
-    pub fn new(points: &PointSet, center: DVec3, paint: Option<&[[u8; 3]]>) -> Self {
+    pub fn new(points: &PointSet, space: Space, paint: Option<&[[u8; 3]]>) -> Self {
         let n = points.len();
         assert!(points.normals.len() == n && points.radii.len() == n, "columns of one length");
         let levels = match points.attribute("level").map(|a| &a.values) {
             Some(Values::U8(levels)) => &levels[..],
             _ => &[],
         };
-        let shift = points.origin - center;
+        let place = |p: Vec3| space.place(points.origin + p.as_dvec3());
         let record = |i: usize| Point {
-            // Exact where both origins are zero.
-            position: (points.positions[i].as_dvec3() + shift).as_vec3().to_array(),
-            radius: points.radii[i],
+            position: place(points.positions[i]).to_array(),
+            radius: space.length(points.radii[i]),
             normal: points.normals[i].to_array(),
             level: levels.get(i).copied().unwrap_or(0).into(),
         };
@@ -93,9 +95,18 @@ impl Splats {
             assert_eq!(paint.len(), n, "one colour a point");
             paint.iter().map(|&c| Extra { paint: pack(c), ..Extra::default() }).collect()
         });
-        let mut splats = Self { points: (0..n).map(record).collect(), extras };
+        let mut splats = Self { points: (0..n).map(record).collect(), extras, bounds: None };
+        splats.bounds = splats.bounds();
         creases::cut(points, &mut splats);
         splats
+    }
+
+    fn bounds(&self) -> Option<[Vec3; 2]> {
+        let one = |point: &Point| {
+            let (center, radius) = (Vec3::from(point.position), Vec3::splat(point.radius.max(0.0)));
+            [center - radius, center + radius]
+        };
+        self.points.iter().map(one).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])
     }
 
     /// Adds a copy of a disc with another normal.
@@ -104,6 +115,11 @@ impl Splats {
         if !self.extras.is_empty() {
             self.extras.push(self.extras[i]);
         }
+    }
+
+    /// One record a disc or dot: position, radius, normal and level, in the space of the picture.
+    pub fn points(&self) -> &[Point] {
+        &self.points
     }
 
     /// Number of discs and dots.

@@ -14,7 +14,7 @@ pub enum Coloring {
     Normal,
     /// The radius on the ramp, lit softly.
     Radius {
-        /// The radius at the low end of the ramp.
+        /// The radius at the low end of the ramp, in the unit of the [`Splats`](crate::Splats).
         low: f32,
         /// The radius at its high end.
         high: f32,

@@ -33,11 +33,22 @@ pub(crate) const DATA: u32 = 3;
 pub(crate) const RADIUS: u32 = 4;
 pub(crate) const LEVEL: u32 = 5;
 
-/// The near plane lies at this share of the distance to the target.
-const NEAR: f32 = 1e-3;
+/// The near plane lies at this share of the distance to the farthest point. Depth is near / distance in floats, of the
+/// same relative precision at any distance.
+const NEAR: f32 = 1e-5;
 
 impl Uniform {
-    pub(crate) fn new(camera: &Camera, style: &Style, size: Size) -> Self {
+    /// `bounds` are corners of a box around what is shown; without them its size is taken for the distance of the target.
+    pub(crate) fn new(
+        camera: &Camera,
+        style: &Style,
+        size: Size,
+        bounds: Option<[Vec3; 2]>,
+    ) -> Self {
+        let far = match bounds {
+            Some([low, high]) => (camera.eye - low).abs().max((high - camera.eye).abs()).length(),
+            None => camera.distance(),
+        };
         let [right, up, forward] = camera.axes();
         let half = (0.5 * camera.fov).tan();
         let rows = (size.height * style.supersampling) as f32;
@@ -51,7 +62,7 @@ impl Uniform {
         };
         Self {
             eye: camera.eye.to_array(),
-            near: NEAR * camera.eye.distance(camera.target).max(f32::MIN_POSITIVE),
+            near: (NEAR * far).max(f32::MIN_POSITIVE),
             right: right.to_array(),
             pixel: 2.0 * half / rows,
             up: up.to_array(),

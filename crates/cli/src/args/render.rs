@@ -46,10 +46,10 @@ pub(crate) struct RenderArgs {
     #[arg(allow_hyphen_values = true)]
     pub(crate) target: Option<DVec3>,
     /// Direction that is upright in the picture [default: that of the view, else 0,1,0]
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = direction)]
     #[arg(allow_hyphen_values = true)]
     pub(crate) up: Option<DVec3>,
-    /// Move the camera along its line of sight until everything is seen; so it is without --eye
+    /// Move the camera along its line of sight, towards --target, until everything is seen; so it is without --eye
     #[arg(long)]
     pub(crate) fit: bool,
     /// What colors show
@@ -64,11 +64,11 @@ pub(crate) struct RenderArgs {
     /// Draw raw points instead of splats
     #[arg(long)]
     pub(crate) points: bool,
-    /// Radius of raw points, pixels
-    #[arg(long, value_name = "X", default_value = "1.5", value_parser = above_zero)]
+    /// Radius of raw points, 0.001 to 1000 pixels
+    #[arg(long, value_name = "X", default_value = "1.5", value_parser = size_factor)]
     pub(crate) point_size: f32,
-    /// Factor of the size of the splats
-    #[arg(long, value_name = "X", default_value = "1", value_parser = above_zero)]
+    /// Factor of the size of the splats, 0.001 to 1000
+    #[arg(long, value_name = "X", default_value = "1", value_parser = size_factor)]
     pub(crate) splat_scale: f32,
     /// Color behind the clouds: RRGGBB, RRGGBBAA or none
     #[arg(long, value_name = "COLOR", default_value = "ffffff", value_parser = color)]
@@ -83,7 +83,7 @@ pub(crate) struct RenderArgs {
     /// Leave out text and color scale
     #[arg(long, conflicts_with = "caption")]
     pub(crate) no_captions: bool,
-    /// Go around the cloud in N frames
+    /// Turn the cloud around in N frames, about --up, or the y axis (z with --z-up) without it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=3600))]
     pub(crate) turntable: Option<u32>,
     /// Frames a second of an animated PNG
@@ -134,13 +134,28 @@ pub(super) fn size(text: &str) -> Result<Size, String> {
     }
 }
 
+/// A place within the limits of files.
 fn vector(text: &str) -> Result<DVec3, String> {
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse()).collect();
     match numbers.as_deref() {
-        Ok(&[x, y, z]) if x.is_finite() && y.is_finite() && z.is_finite() => {
+        Ok(&[x, y, z]) if [x, y, z].iter().all(|c: &f64| c.abs() <= 1e15) => {
             Ok(DVec3::new(x, y, z))
         }
-        _ => Err("it must be three numbers like 0,0.5,-2".into()),
+        _ => Err("it must be three numbers within ±1e15 like 0,0.5,-2".into()),
+    }
+}
+
+fn direction(text: &str) -> Result<DVec3, String> {
+    let vector = vector(text)?;
+    // Its square must not underflow.
+    if vector.length() > 0.0 { Ok(vector) } else { Err("it must not be zero".into()) }
+}
+
+/// A factor or a number of pixels.
+fn size_factor(text: &str) -> Result<f32, String> {
+    match number(text)? {
+        value if (1e-3..=1e3).contains(&value) => Ok(value),
+        _ => Err("it must be 0.001 to 1000".into()),
     }
 }
 

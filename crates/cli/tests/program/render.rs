@@ -179,8 +179,42 @@ fn pictures_that_cannot_be_are_refused() {
         &["--target", "0,0,0"],
         &["--fps", "3"],
         &["--view", "top", "--eye", "0,0,1"],
+        &["--eye", "1e16,0,0"],
+        &["--up", "0,0,0"],
+        &["--splat-scale", "1e4"],
+        &["--points", "--point-size", "1e-4"],
     ] {
         let output = folder.run(&[&["render", "in.png", "-o", "out.png"], wrong].concat());
         assert_eq!(output.status.code(), Some(2), "{wrong:?}: {}", text(&output.stderr));
     }
+}
+
+#[test]
+fn cameras_without_a_direction_are_refused() {
+    let folder = Folder::with_sample("sphere", "50");
+    let fail = |options: &[&str], part: &str| {
+        folder.fail(&[&["render", "in.ply", "-o", "out.png"], options].concat(), part);
+    };
+    fail(&["--eye", "1,2,3", "--target", "1,2,3"], "give another --target");
+    fail(&["--view", "top", "--up", "0,-1,0"], "--up");
+    fail(&["--eye", "0,9,0", "--target", "0,0,0"], "--up");
+}
+
+#[test]
+fn turntables_turn_about_the_upright_axis() {
+    let folder = Folder::with_sample("torus", "200");
+    // The axis of the torus is z: about it every frame is nearly alike.
+    let turn = ["in.ply", "--turntable", "2", "-o", "turn-#.png"];
+    let frames = |options: &[&str]| {
+        render(&folder, &[&turn[..], options].concat());
+        ["turn-0.png", "turn-1.png"].map(|name| picture(&folder, name).2)
+    };
+    let ink = |pixels: &[[u8; 4]]| pixels.iter().filter(|p| **p != [255; 4]).count();
+    let [a, b] = frames(&["--z-up", "--view", "left"]);
+    assert!(ink(&a).abs_diff(ink(&b)) < 20 && a != b);
+    // From above and turned by half: the picture stands on its head.
+    let [a, mut b] = frames(&["--view", "top", "--color", "normal"]);
+    b.reverse();
+    let far = a.iter().zip(&b).filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > 60)).count();
+    assert!(far < 40, "{far}");
 }

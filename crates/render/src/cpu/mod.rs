@@ -27,7 +27,7 @@ const LIMIT: u32 = 1 << 15;
 /// The picture has no pixels, or too many.
 pub fn draw(splats: &Splats, camera: &Camera, style: &Style, size: Size) -> Result<Picture, Error> {
     size.check(style.supersampling, LIMIT)?;
-    let view = Uniform::new(camera, style, size);
+    let view = Uniform::new(camera, style, size, splats.bounds);
     let ramp: Vec<Vec3> = packed_ramp().into_iter().map(unpack).collect();
     let project = |i| Disc::project(&view, &ramp, splats, i, size);
     let discs: Vec<Disc> = (0..splats.len()).into_par_iter().filter_map(project).collect();
