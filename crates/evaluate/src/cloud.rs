@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use surfine_points::{DVec3, Model, Vec3};
 
-use crate::error::{Unfit, check, check_places};
+use crate::error::{Unfit, check, check_length, check_places};
 use crate::places::Places;
 use crate::spread::mean;
 use crate::tree::Tree;
@@ -17,7 +17,7 @@ const SPACING_NEIGHBORS: usize = 6;
 pub(crate) struct Cloud<'a> {
     /// As it came.
     pub(crate) model: &'a Model,
-    /// Unit normal of each point; `None` where it has no direction. No column if the model has none.
+    /// Unit normal of each point; `None` where it has no direction. No column if the model has none and is no mesh.
     pub(crate) normals: Option<Vec<Option<DVec3>>>,
     /// The different positions.
     pub(crate) places: Places,
@@ -42,7 +42,7 @@ impl<'a> Cloud<'a> {
         let neighbors = neighbors(&places.positions, &tree, row);
         let mut cloud = Self {
             model,
-            normals: model.normals.as_deref().map(units),
+            normals: normals(model),
             places,
             tree,
             neighbors,
@@ -54,6 +54,8 @@ impl<'a> Cloud<'a> {
         let local = |place| mean((0..count).map(|k| cloud.neighbor_distance(place, k)));
         cloud.spacings = (0..cloud.places.len()).into_par_iter().map(local).collect();
         cloud.spacing = mean(cloud.spacings.iter().copied());
+        let smallest = cloud.spacings.iter().copied().fold(f64::INFINITY, f64::min);
+        check_length(smallest, "smallest spacing", "output")?;
         Ok(cloud)
     }
 
@@ -76,6 +78,17 @@ impl<'a> Cloud<'a> {
     /// Points whose normal is zero or not finite, if there are normals.
     pub(crate) fn bad_normals(&self) -> usize {
         self.normals.as_ref().map_or(0, |normals| normals.iter().filter(|n| n.is_none()).count())
+    }
+}
+
+/// Unit normals of a model; a mesh without normals has those of its triangles.
+pub(crate) fn normals(model: &Model) -> Option<Vec<Option<DVec3>>> {
+    match &model.normals {
+        Some(normals) => Some(units(normals)),
+        None if model.is_mesh() => {
+            Some(model.vertex_normals().into_iter().map(DVec3::try_normalize).collect())
+        }
+        None => None,
     }
 }
 

@@ -13,6 +13,8 @@ pub enum Unfit {
     Empty { model: &'static str },
     #[error("all points of the {model} are in one place: give at least two different positions")]
     OnePlace { model: &'static str },
+    #[error("the {model}'s {what} is {length:e}, too near to zero to divide by: scale the file")]
+    TooSmall { model: &'static str, what: &'static str, length: f64 },
     #[error(
         "the {model}'s vertex {vertex} has the coordinate {value:e}, which is not within ±1e70: remove or repair it"
     )]
@@ -75,4 +77,14 @@ fn check_corners(model: &Model, name: &'static str) -> Result<(), Unfit> {
 /// Checks that not everything lies in one place: there is no spacing and no scale otherwise.
 pub(crate) fn check_places(places: &Places, name: &'static str) -> Result<(), Unfit> {
     if places.len() < 2 { Err(Unfit::OnePlace { model: name }) } else { Ok(()) }
+}
+
+/// Checks a length that measures are divided by: tiny ones underflow.
+pub(crate) fn check_length(
+    length: f64,
+    what: &'static str,
+    model: &'static str,
+) -> Result<(), Unfit> {
+    let fits = length > 0.0 && length.is_normal();
+    if fits { Ok(()) } else { Err(Unfit::TooSmall { model, what, length }) }
 }

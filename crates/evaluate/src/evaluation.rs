@@ -4,7 +4,7 @@ use serde::Serialize;
 use surfine_points::Model;
 
 use crate::chamfer::{self, Chamfer};
-use crate::cloud::{Cloud, units};
+use crate::cloud::{self, Cloud};
 use crate::colors::{self, ColorError};
 use crate::coverage::{self, Coverage};
 use crate::distance::{self, Distance};
@@ -72,7 +72,8 @@ pub struct OutputSummary {
 
 /// Measures an output against the truth. With the input it came from, says too whether that survived.
 ///
-/// `progress` is called with the name of each measure as it begins. Triangles of the output and of the input don't count.
+/// `progress` is called with the name of each measure as it begins. Triangles of the
+/// output and of the input don't count, but a mesh without normals has those of its triangles.
 ///
 /// # Errors
 /// The first thing in the output or the input that makes it unfit, see [`Unfit`].
@@ -148,7 +149,7 @@ fn summary(cloud: &Cloud<'_>) -> OutputSummary {
 /// The first thing in the output that makes it unfit, see [`Unfit`].
 pub fn errors(output: &Model, truth: &Truth) -> Result<Vec<f64>, Unfit> {
     check(output, "output")?;
-    let normals = output.normals.as_deref().map(units);
+    let normals = cloud::normals(output);
     let closest = distance::project(&output.positions, normals.as_deref(), truth);
     Ok(closest.into_iter().map(|c| c.distance).collect())
 }

@@ -7,7 +7,7 @@ mod points;
 use serde::Serialize;
 use surfine_points::{DVec3, Model};
 
-use crate::error::{Unfit, check};
+use crate::error::{Unfit, check, check_length};
 use mesh::Mesh;
 use points::Points;
 
@@ -102,13 +102,15 @@ impl Truth {
     /// The first thing in the model that makes it unfit, see [`Unfit`].
     pub fn with_crease_angle(model: &Model, degrees: f64) -> Result<Self, Unfit> {
         check(model, "truth")?;
-        if model.is_mesh() {
+        let truth = if model.is_mesh() {
             let (mesh, summary) = Mesh::new(model, degrees)?;
-            Ok(Self { surface: Surface::Mesh(Box::new(mesh)), summary })
+            Self { surface: Surface::Mesh(Box::new(mesh)), summary }
         } else {
             let (points, summary) = Points::new(model)?;
-            Ok(Self { surface: Surface::Points(Box::new(points)), summary })
-        }
+            Self { surface: Surface::Points(Box::new(points)), summary }
+        };
+        check_length(truth.summary.diagonal, "diagonal", "truth")?;
+        Ok(truth)
     }
 
     /// What is known of the truth itself.

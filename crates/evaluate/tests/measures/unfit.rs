@@ -41,6 +41,17 @@ fn one_place_has_no_spacing() {
 }
 
 #[test]
+fn lengths_that_underflow_are_named() {
+    let mut tiny = good();
+    tiny.positions.iter_mut().for_each(|p| *p *= 1e-200);
+    let is = |found: Unfit, name: &str| {
+        assert!(matches!(found, Unfit::TooSmall { model, .. } if model == name), "{found}");
+    };
+    is(as_output(&tiny), "output");
+    is(as_truth(&tiny), "truth");
+}
+
+#[test]
 fn coordinates_that_are_no_places_are_named() {
     for value in [f64::NAN, f64::INFINITY, 1e200] {
         let mut model = good();
