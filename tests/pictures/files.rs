@@ -3,7 +3,7 @@
 use std::fs::{self, File};
 use std::io::{BufReader, Read};
 use std::path::Path;
-use surfine_render::{Error, Picture, Size, write_animation};
+use surfine_render::{Animation, Error, Picture, Size};
 
 /// A decoded file: its pictures and how they follow each other.
 struct Decoded {
@@ -35,6 +35,12 @@ fn decode(path: &Path) -> Decoded {
 /// The picture of a file.
 pub(crate) fn read_png(path: &Path) -> Picture {
     decode(path).frames.remove(0)
+}
+
+fn write_animation(path: &Path, frames: &[Picture], per_second: u16) -> Result<(), Error> {
+    let mut file = Animation::new(path, frames[0].size, frames.len() as u32, per_second)?;
+    frames.iter().try_for_each(|frame| file.push(frame))?;
+    file.finish()
 }
 
 /// Every byte in every channel, no two rows alike.
@@ -117,6 +123,32 @@ fn a_failure_leaves_the_old_file() {
     assert!(matches!(error, Error::Write { .. }), "{error}");
     assert!(fs::read(&path).unwrap() == before, "the old file is gone");
     assert_eq!(names(folder.path()), ["a.png"]);
+}
+
+#[test]
+fn missing_frames_are_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.png");
+    let mut file = Animation::new(&path, colorful(0).size, 3, 10).unwrap();
+    file.push(&colorful(0)).unwrap();
+    assert!(matches!(file.finish(), Err(Error::Write { .. })));
+    assert_eq!(names(folder.path()), [""; 0]);
+}
+
+#[cfg(unix)]
+#[test]
+fn links_stay_and_protected_files_too() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let folder = tempfile::tempdir().unwrap();
+    let [path, link] = ["a.png", "link.png"].map(|name| folder.path().join(name));
+    colorful(0).write_png(&path).unwrap();
+    symlink(&path, &link).unwrap();
+    colorful(1).write_png(&link).unwrap();
+    assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    assert_eq!(decode(&path).frames, [colorful(1)]);
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o444)).unwrap();
+    assert!(matches!(colorful(2).write_png(&path), Err(Error::Write { .. })));
+    assert_eq!(decode(&path).frames, [colorful(1)]);
 }
 
 #[test]

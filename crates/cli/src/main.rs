@@ -3,13 +3,16 @@
 mod adapters;
 mod args;
 mod backend;
+mod cloud;
 mod evaluate;
 mod files;
+mod paint;
 mod painter;
 mod refine;
 mod render;
 mod report;
 mod sample;
+mod scene;
 mod watch;
 
 use args::{Cli, Command};

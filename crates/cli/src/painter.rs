@@ -4,18 +4,23 @@ use crate::args::BackendChoice;
 use crate::watch::Watch;
 use crate::{Failure, backend};
 use surfine::{Gpu, choose_adapter};
-use surfine_render::{Camera, DeviceSplats, Picture, Renderer, Size, Splats, Style, cpu};
+use surfine_render::{Camera, DeviceSplats, Error, Picture, Renderer, Size, Splats, Style, cpu};
 
 /// Who draws.
 pub(crate) enum Painter {
-    Gpu(Box<Renderer>, String),
+    Gpu {
+        renderer: Box<Renderer>,
+        name: String,
+        /// The user has left the choice: the CPU draws if this one fails.
+        may_fail: bool,
+    },
     Cpu,
 }
 
 /// Points where the painter wants them.
-pub(crate) enum Ready<'a> {
-    Device(DeviceSplats),
-    Host(&'a Splats),
+pub(crate) struct Ready<'a> {
+    host: &'a Splats,
+    device: Option<DeviceSplats>,
 }
 
 impl Painter {
@@ -27,17 +32,17 @@ impl Painter {
     ) -> Result<Self, Failure> {
         watch.step("preparing".into());
         let wanted = if adapter.is_some() { BackendChoice::Gpu } else { wanted };
-        let open = |adapter| {
+        let open = |adapter, may_fail| {
             let gpu = Gpu::open(&adapter)?;
-            Ok(Self::Gpu(Box::new(Renderer::new(&gpu)?), gpu.name))
+            Ok(Self::Gpu { renderer: Box::new(Renderer::new(&gpu)?), name: gpu.name, may_fail })
         };
         match wanted {
             BackendChoice::Cpu => Ok(Self::Cpu),
-            BackendChoice::Gpu => open(choose_adapter(adapter)?),
+            BackendChoice::Gpu => open(choose_adapter(adapter)?, false),
             BackendChoice::Auto => match choose_adapter(None) {
                 Ok(adapter) if backend::is_preferred(&adapter) => {
-                    open(adapter).or_else(|Failure(reason)| {
-                        watch.warn(&format!("drawing on the CPU: the GPU failed: {reason}"));
+                    open(adapter, true).or_else(|Failure(reason)| {
+                        warn(watch, &reason);
                         Ok(Self::Cpu)
                     })
                 }
@@ -48,31 +53,65 @@ impl Painter {
 
     pub(crate) fn name(&self) -> &str {
         match self {
-            Self::Gpu(_, name) => name,
+            Self::Gpu { name, .. } => name,
             Self::Cpu => "the CPU",
         }
     }
 
-    pub(crate) fn upload<'a>(&self, splats: &'a Splats) -> Result<Ready<'a>, Failure> {
-        Ok(match self {
-            Self::Gpu(renderer, _) => Ready::Device(renderer.upload(splats)?),
-            Self::Cpu => Ready::Host(splats),
-        })
+    /// Refuses pictures without pixels, or with too many.
+    pub(crate) fn check(
+        &mut self,
+        size: Size,
+        supersampling: u32,
+        watch: &Watch,
+    ) -> Result<(), Failure> {
+        let checked = self.on_gpu(watch, |renderer| renderer.check(size, supersampling))?;
+        Ok(checked.map_or_else(|| cpu::check(size, supersampling), Ok)?)
+    }
+
+    pub(crate) fn upload<'a>(
+        &mut self,
+        splats: &'a Splats,
+        watch: &Watch,
+    ) -> Result<Ready<'a>, Failure> {
+        let device = self.on_gpu(watch, |renderer| renderer.upload(splats))?;
+        Ok(Ready { host: splats, device })
     }
 
     pub(crate) fn draw(
-        &self,
+        &mut self,
         splats: &Ready<'_>,
         camera: &Camera,
         style: &Style,
         size: Size,
+        watch: &Watch,
     ) -> Result<Picture, Failure> {
-        Ok(match (self, splats) {
-            (Self::Gpu(renderer, _), Ready::Device(splats)) => {
-                renderer.draw(splats, camera, style, size)?
-            }
-            (_, Ready::Host(splats)) => cpu::draw(splats, camera, style, size)?,
-            (Self::Cpu, Ready::Device(_)) => unreachable!("the CPU uploads nothing"),
-        })
+        let picture = match &splats.device {
+            Some(device) => self.on_gpu(watch, |r| r.draw(device, camera, style, size))?,
+            None => None,
+        };
+        Ok(picture.map_or_else(|| cpu::draw(splats.host, camera, style, size), Ok)?)
     }
+
+    /// What the GPU makes; nothing if the CPU is to do it.
+    fn on_gpu<T>(
+        &mut self,
+        watch: &Watch,
+        work: impl FnOnce(&Renderer) -> Result<T, Error>,
+    ) -> Result<Option<T>, Failure> {
+        let Self::Gpu { renderer, may_fail, .. } = self else { return Ok(None) };
+        match work(renderer) {
+            Ok(made) => Ok(Some(made)),
+            Err(error) if *may_fail => {
+                warn(watch, &error.to_string());
+                *self = Self::Cpu;
+                Ok(None)
+            }
+            Err(error) => Err(error.into()),
+        }
+    }
+}
+
+fn warn(watch: &Watch, reason: &str) {
+    watch.warn(&format!("drawing on the CPU: the GPU failed: {reason}"));
 }

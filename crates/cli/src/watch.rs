@@ -35,6 +35,11 @@ impl Watch {
         self.step(format!("level {level}/{levels}, {points} points: {stage}"));
     }
 
+    /// Does something without the progress in its way.
+    pub(crate) fn suspend<T>(&self, work: impl FnOnce() -> T) -> T {
+        self.bar.suspend(work)
+    }
+
     /// A line that stays, above the progress.
     pub(crate) fn warn(&self, message: &str) {
         self.bar.suspend(|| warn(message));

@@ -3,6 +3,7 @@
 //! This crate knows files, attributes, the uniform grid and the parameters of the refinement. It knows neither the
 //! algorithm nor a GPU.
 
+pub mod files;
 mod grid;
 mod model;
 mod params;

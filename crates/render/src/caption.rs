@@ -13,8 +13,17 @@ const WIDE: u32 = 1000;
 pub struct Caption {
     /// A line of text; characters beyond ASCII show as `?`, and a line that is too long loses its middle.
     pub text: String,
-    /// The values at both ends of the ramp.
-    pub ramp: Option<[String; 2]>,
+    /// What the colours mean.
+    pub scale: Option<Scale>,
+}
+
+/// What the colours of a picture mean.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Scale {
+    /// What is shown. It stands before the value at the low end, or in the line of text where there is no room.
+    pub what: String,
+    /// The values at both ends of the ramp; `..` where there is no room for one.
+    pub ends: [String; 2],
 }
 
 impl Picture {
@@ -24,19 +33,20 @@ impl Picture {
         let letters =
             if self.size.width < WIDE { RasterHeight::Size16 } else { RasterHeight::Size24 };
         let line = letters.val() as u32 + 2 * MARGIN;
-        let lines = 1 + u32::from(caption.ramp.is_some());
+        let lines = 1 + u32::from(caption.scale.is_some());
         let top = self.size.height;
         let size = Size { height: top + lines * line, ..self.size };
         self.pixels.resize(size.pixels(), [255; 4]);
         self.size = size;
         let columns = (size.width as usize / get_raster_width(FontWeight::Regular, letters)).max(1);
-        self.write(&shorten(&caption.text, columns), 0.5, top + MARGIN, letters);
-        if let Some([low, high]) = &caption.ramp {
+        let third = columns / 3;
+        let (text, ends) = caption.lines(third);
+        self.write(&shorten(&text, columns), 0.5, top + MARGIN, letters);
+        if let Some([low, high]) = ends {
             let row = top + line + MARGIN;
-            let third = columns / 3;
             self.draw_ramp(size.width / 3, size.width * 2 / 3, row, letters.val() as u32);
-            self.write(&shorten(low, third), 1.0 / 6.0, row, letters);
-            self.write(&shorten(high, third), 5.0 / 6.0, row, letters);
+            self.write(&shorten(&low, third), 1.0 / 6.0, row, letters);
+            self.write(&shorten(&high, third), 5.0 / 6.0, row, letters);
         }
         self
     }
@@ -71,6 +81,23 @@ impl Picture {
     }
 }
 
+impl Caption {
+    /// The line of text, and what stands at both ends of the ramp, where there is room for so many letters.
+    fn lines(&self, room: usize) -> (String, Option<[String; 2]>) {
+        let Some(Scale { what, ends: [low, high] }) = &self.scale else {
+            return (self.text.clone(), None);
+        };
+        // Part of a number would be another number.
+        let whole = |value: &String| if value.len() <= room { value.clone() } else { "..".into() };
+        let named = format!("{what} {low}");
+        if named.len() <= room {
+            return (self.text.clone(), Some([named, whole(high)]));
+        }
+        let parts = [self.text.as_str(), what].into_iter().filter(|part| !part.is_empty());
+        (parts.collect::<Vec<_>>().join(", "), Some([low, high].map(whole)))
+    }
+}
+
 /// At most so many letters, ASCII only.
 fn shorten(text: &str, columns: usize) -> String {
     let ascii = |c: char| if c == ' ' || c.is_ascii_graphic() { c } else { '?' };
@@ -96,10 +123,31 @@ mod tests {
         assert_eq!(shorten("größe\n", 10), "gr??e?");
     }
 
+    fn scale(what: &str, low: &str, high: &str) -> Scale {
+        Scale { what: what.into(), ends: [low.into(), high.into()] }
+    }
+
+    #[test]
+    fn values_are_never_cut() {
+        let caption = |text: &str| Caption {
+            text: text.into(),
+            scale: Some(scale("radius", "1.234e-1", "5.678e-1")),
+        };
+        let lines = |text, room| {
+            let (text, ends) = caption(text).lines(room);
+            let [low, high] = ends.unwrap();
+            [text, low, high]
+        };
+        assert_eq!(lines("a", 15), ["a", "radius 1.234e-1", "5.678e-1"]);
+        assert_eq!(lines("a", 14), ["a, radius", "1.234e-1", "5.678e-1"]);
+        assert_eq!(lines("", 8), ["radius", "1.234e-1", "5.678e-1"]);
+        assert_eq!(lines("a", 7), ["a, radius", "..", ".."]);
+    }
+
     #[test]
     fn captions_add_rows_with_ink() {
         let size = Size { width: 120, height: 10 };
-        let caption = Caption { text: "sphere".into(), ramp: Some(["0".into(), "1".into()]) };
+        let caption = Caption { text: "sphere".into(), scale: Some(scale("r", "0", "1")) };
         let picture = Picture::new(size, [9; 4]).with_caption(&caption);
         assert_eq!(picture.size, Size { width: 120, height: 10 + 2 * 28 });
         assert_eq!(picture.pixels.len(), 120 * 66);

@@ -39,9 +39,9 @@ mod style;
 mod view;
 
 pub use camera::{Camera, UnknownView, View};
-pub use caption::Caption;
+pub use caption::{Caption, Scale};
 pub use error::Error;
-pub use picture::{Picture, Size, write_animation};
+pub use picture::{Animation, Picture, Size};
 pub use renderer::{DeviceSplats, Renderer, SHADERS};
 pub use space::Space;
 pub use splats::Splats;

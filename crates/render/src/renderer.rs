@@ -95,6 +95,14 @@ impl Renderer {
         Ok(made?)
     }
 
+    /// Checks that a picture has pixels, and not more than the device allows.
+    ///
+    /// # Errors
+    /// It has none, or too many.
+    pub fn check(&self, size: Size, supersampling: u32) -> Result<(), Error> {
+        size.check(supersampling, self.gpu.device.limits().max_texture_dimension_2d)
+    }
+
     /// Copies points to the device.
     ///
     /// # Errors
@@ -146,8 +154,7 @@ impl Renderer {
         style: &Style,
         size: Size,
     ) -> Result<wgpu::Texture, Error> {
-        let limit = self.gpu.device.limits().max_texture_dimension_2d;
-        size.check(style.supersampling, limit)?;
+        self.check(size, style.supersampling)?;
         let view = Uniform::new(camera, style, size, splats.bounds);
         let submitted = self.gpu.guarded(|| {
             let mut encoder = self.gpu.device.create_command_encoder(&Default::default());

@@ -46,6 +46,9 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, value_name = "SIDE", default_value = "front", value_parser = view())]
     #[arg(requires = "heatmap")]
     pub(crate) view: View,
+    /// The z axis is up in the heatmap, as in terrain and CAD: the front is then the side of -y
+    #[arg(long, requires = "heatmap")]
+    pub(crate) z_up: bool,
     /// Width and height of the heatmap, pixels
     #[arg(long, value_name = "WxH", default_value = "800x800", value_parser = size)]
     #[arg(requires = "heatmap")]
@@ -56,7 +59,7 @@ pub(crate) struct EvaluateArgs {
     /// Number of threads, 1 to 1024 [default: all cores, or `RAYON_NUM_THREADS`]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
-    /// Print neither progress nor the names of measures that could not be taken
+    /// Print neither progress nor why measures could not be taken; warnings and errors stay
     #[arg(short, long)]
     pub(crate) quiet: bool,
     /// Print the measures as one JSON object, and no progress

@@ -1,8 +1,9 @@
 //! The arguments of `surfine render`.
 
-use super::{BackendChoice, number};
+use super::{BackendChoice, Cli, number};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args, ValueEnum};
+use clap::error::ErrorKind;
+use clap::{Args, CommandFactory, ValueEnum};
 use std::path::PathBuf;
 use surfine_points::DVec3;
 use surfine_render::{Size, View};
@@ -55,10 +56,10 @@ pub(crate) struct RenderArgs {
     /// What colors show
     #[arg(long, value_enum, value_name = "WHAT", default_value_t)]
     pub(crate) color: ColorChoice,
-    /// The true surface for --color error: PLY file of a mesh or of dense points
+    /// The true surface, for --color error alone: PLY file of a mesh or of dense points
     #[arg(long, value_name = "FILE")]
     pub(crate) truth: Option<PathBuf>,
-    /// Value at the bright end of the scale of radius, level and error [default: the largest]
+    /// Value at the bright end of the scale of radius, level or error, which then begins at 0 [default: the largest]
     #[arg(long, value_name = "X", value_parser = above_zero)]
     pub(crate) max: Option<f32>,
     /// Draw raw points instead of splats
@@ -66,9 +67,11 @@ pub(crate) struct RenderArgs {
     pub(crate) points: bool,
     /// Radius of raw points, 0.001 to 1000 pixels
     #[arg(long, value_name = "X", default_value = "1.5", value_parser = size_factor)]
+    #[arg(requires = "points")]
     pub(crate) point_size: f32,
     /// Factor of the size of the splats, 0.001 to 1000
     #[arg(long, value_name = "X", default_value = "1", value_parser = size_factor)]
+    #[arg(conflicts_with = "points")]
     pub(crate) splat_scale: f32,
     /// Color behind the clouds: RRGGBB, RRGGBBAA or none
     #[arg(long, value_name = "COLOR", default_value = "ffffff", value_parser = color)]
@@ -102,6 +105,32 @@ pub(crate) struct RenderArgs {
     /// Print neither progress nor summary; warnings and errors stay
     #[arg(short, long)]
     pub(crate) quiet: bool,
+}
+
+impl RenderArgs {
+    /// Ends the program with wrong usage if an option is given that would do nothing.
+    pub(crate) fn check(&self) {
+        let Some(text) = self.idle_option() else { return };
+        let mut root = Cli::command();
+        // The usage line of the error is then that of `render`.
+        root.build();
+        let render = root.find_subcommand_mut("render").expect("it was just parsed");
+        render.error(ErrorKind::ArgumentConflict, text).exit();
+    }
+
+    fn idle_option(&self) -> Option<&'static str> {
+        let has_scale =
+            matches!(self.color, ColorChoice::Radius | ColorChoice::Level | ColorChoice::Error);
+        if self.truth.is_some() && self.color != ColorChoice::Error {
+            Some("the argument '--truth <FILE>' needs '--color error'")
+        } else if self.max.is_some() && !has_scale {
+            Some("the argument '--max <X>' needs '--color radius', 'level' or 'error'")
+        } else if self.adapter.is_some() && self.backend == BackendChoice::Cpu {
+            Some("the argument '--adapter <NAME>' cannot be used with '--backend cpu'")
+        } else {
+            None
+        }
+    }
 }
 
 /// What the colours of a picture show.

@@ -5,7 +5,7 @@ use crate::render::MESH;
 use serde_json::Value;
 
 fn evaluate_json(folder: &Folder, args: &[&str]) -> Value {
-    let printed = folder.succeed(&[&["evaluate", "--json"], args].concat());
+    let printed = folder.succeed(&[&["evaluate", "--json", "--quiet"], args].concat());
     serde_json::from_str(&printed).unwrap()
 }
 
@@ -15,7 +15,7 @@ fn refined_sphere_is_measured() {
     folder.succeed(&["sample", "sphere", "-n", "20000", "--random", "-o", "truth.ply"]);
     folder.refine(&[]);
     let table =
-        folder.succeed(&["evaluate", "out.ply", "--truth", "truth.ply", "--input", "in.ply"]);
+        folder.succeed(&["evaluate", "out.ply", "--truth", "truth.ply", "--input", "in.ply", "-q"]);
     for part in [
         "distance to tangent planes",
         "spacings",
@@ -73,8 +73,14 @@ fn heatmap_is_drawn() {
     folder.succeed(&["sample", "torus", "-n", "2000", "-o", "truth.ply"]);
     let args =
         ["evaluate", "in.ply", "--truth", "truth.ply", "--heatmap", "heat.png", "--size", "80x60"];
-    folder.succeed(&[&args[..], &["--backend", "cpu"]].concat());
+    folder.succeed(&[&args[..], &["--backend", "cpu", "-q"]].concat());
     assert_eq!(folder.names(), ["heat.png", "in.ply", "truth.ply"]);
+    let y_up = folder.bytes("heat.png");
+    folder.succeed(&[&args[..], &["--backend", "cpu", "-q", "--z-up"]].concat());
+    assert_ne!(folder.bytes("heat.png"), y_up);
+    // Refused before anything is read.
+    let large = ["--size", "32768x9", "--heatmap", "heat.png", "--backend", "cpu"];
+    folder.fail(&[&["evaluate", "none.ply", "--truth", "truth.ply"], &large[..]].concat(), "32768");
     assert!(folder.bytes("heat.png").starts_with(b"\x89PNG"));
     folder
         .fail(&["evaluate", "in.ply", "--truth", "truth.ply", "--heatmap", "heat.gif"], "heat.gif");
@@ -93,4 +99,45 @@ fn unfit_files_are_named() {
         let output = folder.run(&[&["evaluate", "in.ply", "--truth", "in.ply"], wrong].concat());
         assert_eq!(output.status.code(), Some(2), "{wrong:?}: {}", text(&output.stderr));
     }
+}
+
+#[test]
+fn what_is_not_measured_is_named() {
+    let folder = Folder::with_sample("sphere", "100");
+    let bare = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+        property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n\
+        1 0 0 1 2 3\n0 1 0 1 2 3\n0 0 1 1 2 3\n";
+    std::fs::write(folder.path("bare.ply"), bare).unwrap();
+    let notes = |args: &[&str]| {
+        let output = folder.run(&[&["evaluate"], args].concat());
+        assert!(output.status.success());
+        text(&output.stderr)
+    };
+    let found = notes(&["bare.ply", "--truth", "in.ply"]);
+    for part in [
+        "normal error not measured: OUT has no normals",
+        "smoothness of normals not measured: OUT has no normals",
+        "PU-GAN's uniformity not measured",
+        "color error not measured: the truth has no uchar red, green and blue",
+    ] {
+        assert!(found.contains(part), "no `{part}` in {found}");
+    }
+    let found = notes(&["in.ply", "--truth", "bare.ply"]);
+    for part in [
+        "gaps along the surface not measured: the truth has no normals",
+        "normal error not measured: the truth has no normals",
+        "color error not measured: OUT has no uchar",
+    ] {
+        assert!(found.contains(part), "no `{part}` in {found}");
+    }
+    assert_eq!(notes(&["in.ply", "--truth", "bare.ply", "--quiet"]), "");
+}
+
+#[test]
+fn made_normals_have_not_survived() {
+    let folder = Folder::with_input(MESH);
+    folder.succeed(&["sample", "sphere", "-n", "100", "-o", "cloud.ply"]);
+    let args = ["in.ply", "--truth", "in.ply", "--input", "cloud.ply"];
+    let json = evaluate_json(&folder, &args);
+    assert_eq!(json["evaluation"]["survival"]["missing"], serde_json::json!(["nx", "ny", "nz"]));
 }

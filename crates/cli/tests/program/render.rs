@@ -145,13 +145,18 @@ fn any_ply_file_can_be_looked_at() {
     let positions = "ply\nformat ascii 1.0\nelement vertex 2\nproperty double x\nproperty double y\n\
         property double z\nend_header\n1e6 0 0\n1000001 1 0\n";
     let folder = Folder::with_input(positions);
-    render(&folder, &["in.ply", "-o", "out.png"]);
+    let noted = |folder: &Folder, note: &str| {
+        let output = folder.run(&["render", "in.ply", "-o", "out.png", "--size", "60x50"]);
+        assert!(output.status.success());
+        assert_eq!(text(&output.stderr), format!("surfine: in.ply: {note}\n"));
+    };
+    noted(&folder, "there are no normals nx ny nz: points are drawn as dots");
     let (_, _, pixels) = picture(&folder, "out.png");
     assert!(pixels.iter().any(|p| *p != [255; 4]), "points without normals are dots");
     let empty = "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n\
         property float z\nend_header\n";
     let folder = Folder::with_input(empty);
-    render(&folder, &["in.ply", "-o", "out.png"]);
+    noted(&folder, "there are no points: its picture is empty");
     assert!(picture(&folder, "out.png").2.iter().all(|p| *p == [255; 4]));
 }
 
@@ -165,8 +170,12 @@ fn pictures_that_cannot_be_are_refused() {
         &["render", "in.ply", "-o", "out.png", "--size", "32768x9", "--supersampling", "8"],
         "32768",
     );
-    std::fs::rename(folder.path("in.ply"), folder.path("in.png")).unwrap();
+    // Before anything is read.
+    folder.fail(&["render", "none.ply", "-o", "out.png", "--size", "32768x9"], "32768");
+    std::fs::copy(folder.path("in.ply"), folder.path("in.png")).unwrap();
     folder.fail(&["render", "in.png", "-o", "in.png"], "an input too");
+    let error = ["--color", "error", "--truth", "in.png"];
+    folder.fail(&[&["render", "in.ply", "-o", "in.png"], &error[..]].concat(), "an input too");
     for wrong in [
         &["--size", "0x5"][..],
         &["--size", "5"],
@@ -180,6 +189,12 @@ fn pictures_that_cannot_be_are_refused() {
         &["--fps", "3"],
         &["--view", "top", "--eye", "0,0,1"],
         &["--eye", "1e16,0,0"],
+        &["--truth", "in.png"],
+        &["--max", "3"],
+        &["--color", "rgb", "--max", "3"],
+        &["--point-size", "3"],
+        &["--points", "--splat-scale", "2"],
+        &["--backend", "cpu", "--adapter", "llvm"],
         &["--up", "0,0,0"],
         &["--splat-scale", "1e4"],
         &["--points", "--point-size", "1e-4"],
@@ -217,4 +232,82 @@ fn turntables_turn_about_the_upright_axis() {
     b.reverse();
     let far = a.iter().zip(&b).filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > 60)).count();
     assert!(far < 40, "{far}");
+}
+
+#[test]
+fn what_was_made_up_is_noted() {
+    let header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+        property float z\nproperty float nx\nproperty float ny\nproperty float nz\n";
+    let radius = format!(
+        "{header}property float radius\nend_header\n0 0 0 0 0 1 -2\n1 0 0 0 0 1 -1\n0 1 0 0 0 0 1\n"
+    );
+    let notes = |folder: &Folder| {
+        let output = folder.run(&["render", "in.ply", "-o", "out.png", "--size", "60x50"]);
+        assert!(output.status.success());
+        text(&output.stderr)
+    };
+    let found = notes(&Folder::with_input(radius));
+    assert!(found.contains("2 of 3 radii are negative or not finite"), "{found}");
+    assert!(found.contains("1 of 3 normals are zero or not finite"), "{found}");
+    let none = format!("{header}end_header\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n");
+    let found = notes(&Folder::with_input(none));
+    assert!(found.contains("there is no radius: 3 were made from the neighbors"), "{found}");
+}
+
+#[test]
+fn radius_needs_radii() {
+    let bare = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n\
+        property float z\nend_header\n0 0 0\n";
+    let folder = Folder::with_input(bare);
+    let output = folder.run(&["render", "in.ply", "-o", "out.png", "--color", "radius"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output.stderr).contains("there is no usable radius"));
+}
+
+#[test]
+fn a_given_largest_value_begins_the_scale_at_zero() {
+    let folder = Folder::with_sample("sphere", "200");
+    let dark = |max: &[&str]| {
+        render(&folder, &[&["in.ply", "-o", "a.png", "--color", "radius"], max].concat());
+        let [r, g, b, _] = picture(&folder, "a.png").2[25 * 60 + 30];
+        r < 100 && g < 80 && b < 120
+    };
+    // All radii are beyond the small maximum: bright. Far below the large one: dark.
+    assert!(!dark(&["--max", "1e-3"]) && dark(&["--max", "100"]));
+}
+
+#[test]
+fn frame_numbers_are_in_the_name_of_the_file() {
+    let folder = Folder::with_sample("sphere", "50");
+    std::fs::create_dir(folder.path("d#1")).unwrap();
+    render(&folder, &["in.ply", "-o", "d#1/turn.png", "--turntable", "2"]);
+    assert_eq!(folder.names(), ["d#1", "in.ply"]);
+    assert!(folder.path("d#1/turn.png").exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn names_that_take_no_number_are_refused() {
+    use std::os::unix::ffi::OsStrExt;
+    let folder = Folder::with_sample("sphere", "50");
+    let name = std::ffi::OsStr::from_bytes(b"n\xff-#.png");
+    let mut command = folder.command(&["render", "in.ply", "--turntable", "2", "-o"]);
+    let output = command.arg(name).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output.stderr).contains("must be UTF-8"));
+}
+
+#[test]
+fn auto_draws_on_the_cpu_what_the_gpu_refuses() {
+    let folder = Folder::with_sample("sphere", "50");
+    // Wider than software drivers draw, not than the CPU does.
+    let args = ["render", "in.ply", "-o", "out.png", "--size", "16000x2", "--supersampling", "2"];
+    let output = folder.command(&args).env("WGPU_ADAPTER_NAME", "llvmpipe").output().unwrap();
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let found = text(&output.stderr);
+    assert!(
+        found.starts_with("surfine: drawing on the CPU: the GPU failed: a picture of"),
+        "{found}"
+    );
+    assert!(text(&output.stdout).contains("on the CPU"));
 }

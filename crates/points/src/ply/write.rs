@@ -3,12 +3,13 @@
 use super::error::quoted;
 use super::scalar::{self, Scalar};
 use super::{Core, Encoding, PlyError, Provenance, Slot, Source};
+use crate::files::replace;
 use crate::{Attribute, PointSet, Values};
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::fs;
-use std::io::{self, BufWriter, ErrorKind, Write};
-use std::path::{Path, PathBuf};
+use std::io::{self, Write};
+use std::path::Path;
 
 /// The properties that [`Provenance`] adds.
 const PROVENANCE: [&str; 4] = ["level", "parent0", "parent1", "parent2"];
@@ -43,11 +44,13 @@ pub fn write(
     if encoding == Encoding::Ascii {
         check_finite(path, &columns)?;
     }
+    if fs::metadata(path).is_ok_and(|metadata| !metadata.is_file()) {
+        return Err(PlyError::NotAFile { path: path.into() });
+    }
     let failed = |cause| PlyError::Write { path: path.into(), cause };
-    let target = destination(path)?;
-    replace(&target, |out| {
-        write_header(out, &columns, points.len(), source, encoding)?;
-        write_body(out, &columns, points.len(), encoding)
+    replace(path, |mut out| {
+        write_header(&mut out, &columns, points.len(), source, encoding)?;
+        write_body(&mut out, &columns, points.len(), encoding)
     })
     .map_err(failed)
 }
@@ -225,42 +228,6 @@ fn check_finite(path: &Path, columns: &[Column<'_>]) -> Result<(), PlyError> {
             });
         }
     }
-    Ok(())
-}
-
-/// The file to replace: the target of a link, so that the link stays.
-fn destination(path: &Path) -> Result<PathBuf, PlyError> {
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.into());
-    match fs::metadata(&target) {
-        // A rename would put a file in place of the device or pipe.
-        Ok(metadata) if !metadata.is_file() => Err(PlyError::NotAFile { path: path.into() }),
-        // A rename would ignore the protection.
-        Ok(metadata) if metadata.permissions().readonly() => {
-            Err(PlyError::Write { path: path.into(), cause: ErrorKind::PermissionDenied.into() })
-        }
-        _ => Ok(target),
-    }
-}
-
-/// Writes to a temporary file in the folder of `target` and renames it when all is written.
-fn replace(
-    target: &Path,
-    fill: impl FnOnce(&mut BufWriter<tempfile::NamedTempFile>) -> io::Result<()>,
-) -> io::Result<()> {
-    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".surfine-").suffix(".tmp");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // As for any new file; the umask takes its share.
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    let file = builder.tempfile_in(folder.unwrap_or(Path::new(".")))?;
-    let mut out = BufWriter::with_capacity(1 << 16, file);
-    fill(&mut out)?;
-    let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
-    file.persist(target).map_err(|error| error.error)?;
     Ok(())
 }
 

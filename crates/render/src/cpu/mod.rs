@@ -16,6 +16,14 @@ pub(crate) use disc::PUSH;
 
 /// Pixel rows of a band.
 const BAND: u32 = 16;
+/// Checks that a picture has pixels, and not too many.
+///
+/// # Errors
+/// It has none, or too many.
+pub fn check(size: Size, supersampling: u32) -> Result<(), Error> {
+    size.check(supersampling, LIMIT)
+}
+
 /// More subpixels a side than any GPU draws.
 const LIMIT: u32 = 1 << 15;
 
@@ -26,7 +34,7 @@ const LIMIT: u32 = 1 << 15;
 /// # Errors
 /// The picture has no pixels, or too many.
 pub fn draw(splats: &Splats, camera: &Camera, style: &Style, size: Size) -> Result<Picture, Error> {
-    size.check(style.supersampling, LIMIT)?;
+    check(size, style.supersampling)?;
     let view = Uniform::new(camera, style, size, splats.bounds);
     let ramp: Vec<Vec3> = packed_ramp().into_iter().map(unpack).collect();
     let project = |i| Disc::project(&view, &ramp, splats, i, size);
