@@ -7,7 +7,9 @@
 //! weights, lights each subpixel that visibility reached, and averages.
 //!
 //! [`Renderer`] does so on the GPU, from points of the host or straight from the engine's device buffers
-//! ([`DeviceSplats::from`]); [`cpu::draw`] draws the same picture without one.
+//! ([`DeviceSplats::from`]); [`cpu::draw`] draws the same picture without one. The GPU adds up in half floats, which every
+//! device can blend: where more than some hundred discs overlap in one pixel, a thousand records of one place for
+//! instance, its colours are off, and the CPU's are right.
 //!
 //! ```no_run
 //! use surfine_render::{Camera, Renderer, Size, Style, View};

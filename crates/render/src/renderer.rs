@@ -6,6 +6,7 @@ use crate::style::{SOFT, SOLID, packed_ramp};
 use crate::view::Uniform;
 use crate::{Camera, Error, Picture, Size, Splats, Style};
 use glam::Vec3;
+use std::time::Duration;
 use surfine::records::Point;
 use surfine::{Gpu, GpuRefined, wgpu};
 
@@ -29,6 +30,10 @@ pub const SHADERS: [(&str, &str); 2] = [
     ),
 ];
 
+/// How long a picture may take: a hang must not be for ever.
+const TIMEOUT: Duration = Duration::from_secs(600);
+
+/// Half floats: sums of more than some hundred discs lose digits.
 const SUMS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 const PICTURE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -42,6 +47,20 @@ pub struct Renderer {
     attributes: wgpu::RenderPipeline,
     resolve: wgpu::RenderPipeline,
     ramp: wgpu::Buffer,
+    /// For points without extras.
+    no_extras: wgpu::Buffer,
+}
+
+/// What the passes of a picture draw into.
+struct Targets {
+    /// Depth of the discs that show their fronts.
+    fronts: wgpu::Texture,
+    /// Depth of all discs.
+    nearest: wgpu::Texture,
+    /// Sums of the attribute pass.
+    colors: wgpu::Texture,
+    normals: wgpu::Texture,
+    picture: wgpu::Texture,
 }
 
 /// Points in device memory, ready to be drawn.
@@ -76,19 +95,21 @@ impl Renderer {
     /// # Errors
     /// The driver refuses them.
     pub fn new(gpu: &Gpu) -> Result<Self, Error> {
-        let [splat, resolve] = SHADERS.map(|(name, text)| {
-            gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(name),
-                source: wgpu::ShaderSource::Wgsl(text.into()),
-            })
-        });
         let made = gpu.guarded(|| {
+            let [splat, resolve] = SHADERS.map(|(name, text)| {
+                gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                    label: Some(name),
+                    source: wgpu::ShaderSource::Wgsl(text.into()),
+                })
+            });
+            let storage = wgpu::BufferUsages::STORAGE;
             Ok(Self {
                 fronts: splat_pipeline(gpu, &splat, ["front", "visibility"], &[]),
                 backs: splat_pipeline(gpu, &splat, ["back", "visibility"], &[]),
                 attributes: splat_pipeline(gpu, &splat, ["either", "attributes"], &sums_targets()),
                 resolve: resolve_pipeline(gpu, &resolve),
-                ramp: buffer(gpu, "ramp", &packed_ramp(), wgpu::BufferUsages::STORAGE),
+                ramp: buffer(gpu, "ramp", &packed_ramp(), storage),
+                no_extras: buffer(gpu, "no extras", &[Extra::default()], storage),
                 gpu: gpu.clone(),
             })
         });
@@ -172,64 +193,87 @@ impl Renderer {
         view: &Uniform,
         size: Size,
     ) -> wgpu::Texture {
-        let side = view.supersampling;
-        let subpixels = Size { width: size.width * side, height: size.height * side };
-        let target = |label, format, size| texture(&self.gpu, label, format, size);
-        let (fronts, depth, colors, normals, picture) = (
-            target("fronts", DEPTH, subpixels),
-            target("depth", DEPTH, subpixels),
-            target("colors", SUMS, subpixels),
-            target("normals", SUMS, subpixels),
-            target("picture", PICTURE, size),
-        );
-        let [front, nearest, colors, normals, lit] = [&fronts, &depth, &colors, &normals, &picture]
-            .map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
+        let targets = Targets::new(&self.gpu, size, view.supersampling);
         let uniform = buffer(&self.gpu, "view", &[*view], wgpu::BufferUsages::UNIFORM);
+        let fronts = view_of(&targets.fronts);
         let shared = [
             uniform.as_entire_binding(),
             self.ramp.as_entire_binding(),
-            wgpu::BindingResource::TextureView(&front),
+            wgpu::BindingResource::TextureView(&fronts),
         ];
+        self.record_visibility(encoder, splats, &targets, &shared);
+        self.record_attributes(encoder, splats, &targets, &shared);
+        self.record_resolve(encoder, &targets, &shared[..1]);
+        targets.picture
+    }
 
+    /// Depth of the fronts, then that of the backs beside it.
+    fn record_visibility(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        splats: &DeviceSplats,
+        targets: &Targets,
+        shared: &[wgpu::BindingResource<'_>; 3],
+    ) {
+        let (fronts, nearest) = (view_of(&targets.fronts), view_of(&targets.nearest));
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("visibility of fronts"),
-            depth_stencil_attachment: Some(depth_attachment(&front, wgpu::LoadOp::Clear(0.0))),
+            depth_stencil_attachment: Some(depth_attachment(&fronts, wgpu::LoadOp::Clear(0.0))),
             ..Default::default()
         });
         self.draw_discs(&mut pass, &self.fronts, splats, &shared[..2]);
         drop(pass);
         encoder.copy_texture_to_texture(
-            fronts.as_image_copy(),
-            depth.as_image_copy(),
-            depth.size(),
+            targets.fronts.as_image_copy(),
+            targets.nearest.as_image_copy(),
+            targets.nearest.size(),
         );
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("visibility of backs"),
             depth_stencil_attachment: Some(depth_attachment(&nearest, wgpu::LoadOp::Load)),
             ..Default::default()
         });
-        self.draw_discs(&mut pass, &self.backs, splats, &shared);
-        drop(pass);
+        self.draw_discs(&mut pass, &self.backs, splats, shared);
+    }
+
+    /// Sums of what is not behind that depth.
+    fn record_attributes(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        splats: &DeviceSplats,
+        targets: &Targets,
+        shared: &[wgpu::BindingResource<'_>; 3],
+    ) {
+        let [colors, normals, nearest] =
+            [&targets.colors, &targets.normals, &targets.nearest].map(view_of);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("attributes"),
             color_attachments: &[color_attachment(&colors), color_attachment(&normals)],
             depth_stencil_attachment: Some(depth_attachment(&nearest, wgpu::LoadOp::Load)),
             ..Default::default()
         });
-        self.draw_discs(&mut pass, &self.attributes, splats, &shared);
-        drop(pass);
+        self.draw_discs(&mut pass, &self.attributes, splats, shared);
+    }
+
+    /// The picture of the sums.
+    fn record_resolve(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        targets: &Targets,
+        shared: &[wgpu::BindingResource<'_>],
+    ) {
+        let picture = view_of(&targets.picture);
+        let textures = [&targets.colors, &targets.normals, &targets.nearest].map(view_of);
+        let textures = textures.each_ref().map(wgpu::BindingResource::TextureView);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("resolve"),
-            color_attachments: &[color_attachment(&lit)],
+            color_attachments: &[color_attachment(&picture)],
             ..Default::default()
         });
-        let textures = [&colors, &normals, &nearest].map(wgpu::BindingResource::TextureView);
         pass.set_pipeline(&self.resolve);
-        pass.set_bind_group(0, &self.bind(&self.resolve, 0, &shared[..1]), &[]);
+        pass.set_bind_group(0, &self.bind(&self.resolve, 0, shared), &[]);
         pass.set_bind_group(1, &self.bind(&self.resolve, 1, &textures), &[]);
         pass.draw(0..3, 0..1);
-        drop(pass);
-        picture
     }
 
     fn draw_discs(
@@ -241,10 +285,8 @@ impl Renderer {
     ) {
         pass.set_pipeline(pipeline);
         pass.set_bind_group(0, &self.bind(pipeline, 0, shared), &[]);
-        let none = [Extra::default()];
-        let none = buffer(&self.gpu, "no extras", &none, wgpu::BufferUsages::STORAGE);
         for part in &splats.parts {
-            let buffers = [&part.points, part.extras.as_ref().unwrap_or(&none)];
+            let buffers = [&part.points, part.extras.as_ref().unwrap_or(&self.no_extras)];
             let buffers = buffers.map(wgpu::Buffer::as_entire_binding);
             pass.set_bind_group(1, &self.bind(pipeline, 1, &buffers), &[]);
             pass.draw(0..4, 0..part.count);
@@ -271,12 +313,10 @@ impl Renderer {
     fn read_back(&self, texture: &wgpu::Texture, size: Size) -> Result<Picture, surfine::Error> {
         let row = 4 * size.width;
         let stride = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let bytes = u64::from(stride) * u64::from(size.height);
-        let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
         let staging = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("pixels"),
-            size: bytes,
-            usage,
+            size: u64::from(stride) * u64::from(size.height),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
@@ -291,11 +331,47 @@ impl Renderer {
             texture.size(),
         );
         self.gpu.queue.submit([encoder.finish()]);
-        let bytes = self.gpu.read(&staging, bytes)?;
+        let bytes = self.map(&staging)?;
         let rows = bytes.chunks_exact(stride as usize);
         let pixels = rows.flat_map(|bytes| bytes[..row as usize].as_chunks().0).copied().collect();
         Ok(Picture { size, pixels })
     }
+
+    /// Waits for a buffer that the host may read.
+    fn map(&self, buffer: &wgpu::Buffer) -> Result<wgpu::BufferView, surfine::Error> {
+        let failed = |message: String| surfine::Error::Device {
+            adapter: self.gpu.name.clone(),
+            message: message.split_whitespace().collect::<Vec<_>>().join(" "),
+        };
+        let (sender, receiver) = std::sync::mpsc::channel();
+        buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+            // The receiver is gone only if the wait below failed, which is reported there.
+            let _ = sender.send(result);
+        });
+        let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(TIMEOUT) };
+        self.gpu.device.poll(wait).map_err(|e| failed(e.to_string()))?;
+        let mapped = receiver.recv().map_err(|e| failed(e.to_string()))?;
+        mapped.map_err(|e| failed(e.to_string()))?;
+        buffer.get_mapped_range(..).map_err(|e| failed(e.to_string()))
+    }
+}
+
+impl Targets {
+    fn new(gpu: &Gpu, size: Size, side: u32) -> Self {
+        let subpixels = Size { width: size.width * side, height: size.height * side };
+        let target = |label, format, size| texture(gpu, label, format, size);
+        Self {
+            fronts: target("fronts", DEPTH, subpixels),
+            nearest: target("nearest", DEPTH, subpixels),
+            colors: target("colors", SUMS, subpixels),
+            normals: target("normals", SUMS, subpixels),
+            picture: target("picture", PICTURE, size),
+        }
+    }
+}
+
+fn view_of(texture: &wgpu::Texture) -> wgpu::TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
 fn buffer<T: bytemuck::NoUninit>(

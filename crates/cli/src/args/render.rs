@@ -18,7 +18,8 @@ Examples:
 
 Several inputs are drawn side by side by the same camera. A mesh shows its vertices. Points without a
 normal are dots; missing radii are made up from the neighbors. The back of a disc is orange: normals
-should look at you. Axes: x to the right, y up, z towards the viewer of `--view front`; see --z-up.";
+should look at you. At sharp edges of coarse meshes a little orange is no error: one normal a vertex
+can't look both ways. Axes: x to the right, y up, z towards the viewer of `--view front`; see --z-up.";
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
