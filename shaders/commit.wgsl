@@ -21,11 +21,16 @@ override simplified: bool = false;
 fn commit(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let index = linear_index(id, groups);
     if index < params.points {
-        points[index].radius = bitcast<f32>(next_radii[index]);
+        points[index].radius = next_radius(index);
     }
     if index < params.slots && new_indices[index + 1u] != new_indices[index] {
         append_point(index, new_indices[index]);
     }
+}
+
+/// The larger of what the insertion and the next ring ask for.
+fn next_radius(index: u32) -> f32 {
+    return bitcast<f32>(max(next_radii[index], next_radii[params.points + params.slots + index]));
 }
 
 fn append_point(slot: u32, rank: u32) {
@@ -36,13 +41,13 @@ fn append_point(slot: u32, rank: u32) {
         // Section 7, simplification 4: the displacement is computed for inserted points only.
         let triangle = triangle_of(corners);
         position = displaced_center(triangle);
-        let curved = center_cross(triangle, candidate_positions[slot].w);
+        let curved = new_normal(triangle, candidate_positions[slot].w);
         // Else it stays that of the flat triangle.
-        if dot3(curved, curved) > FLAT {
-            normal = unit(curved);
+        if dot3(curved, curved) > 0.0 {
+            normal = curved;
         }
     }
-    let radius = bitcast<f32>(next_radii[params.points + slot]);
+    let radius = next_radius(params.points + slot);
     points[params.points + rank] = Point(position, radius, normal, params.level);
     let first = 3u * (dispatch.x + rank);
     parents[first] = corners.x;

@@ -5,12 +5,13 @@
 @group(0) @binding(2) var<storage, read> points: array<Point>;
 @group(0) @binding(3) var<storage, read> ring_starts: array<u32>;
 @group(0) @binding(4) var<storage, read> candidate_positions: array<vec4<f32>>;
-@group(0) @binding(5) var<storage, read> owners: array<u32>;
-@group(0) @binding(6) var<storage, read> grid: array<u32>;
+@group(0) @binding(5) var<storage, read> candidate_normals: array<vec4<f32>>;
+@group(0) @binding(6) var<storage, read> owners: array<u32>;
+@group(0) @binding(7) var<storage, read> grid: array<u32>;
 /// First entry and size of each point's list.
-@group(0) @binding(7) var<storage, read_write> conflict_blocks: array<vec2<u32>>;
-@group(0) @binding(8) var<storage, read_write> conflict_entries: array<u32>;
-@group(0) @binding(9) var<storage, read_write> counters: Counters;
+@group(0) @binding(8) var<storage, read_write> conflict_blocks: array<vec2<u32>>;
+@group(0) @binding(9) var<storage, read_write> conflict_entries: array<u32>;
+@group(0) @binding(10) var<storage, read_write> counters: Counters;
 
 /// What a point brings along: its centre, the square of λ1 r and its slots.
 struct Own {
@@ -27,7 +28,7 @@ fn conflicts(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
     if p >= params.points {
         return;
     }
-    let near = params.lambda1 * points[p].radius;
+    let near = near_radius(p);
     let own = Own(p, ring_starts[p], ring_starts[p + 1u], near * near, points[p].position);
     let radius = reach_of_conflicts(own, near);
     // Beyond it no ball reaches, whatever the rounding.

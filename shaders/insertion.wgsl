@@ -39,7 +39,7 @@ fn insertion(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
 fn allocate(p: u32) -> bool {
     var near_count = 0u;
     var outer_count = 0u;
-    let near = params.lambda1 * ring.radius;
+    let near = ring.near;
     var walk = ball_walk(ring.center, ring.radius);
     for (var slot = next_entry(&walk); slot != NONE; slot = next_entry(&walk)) {
         if visible(slot) {
@@ -62,7 +62,7 @@ fn allocate(p: u32) -> bool {
 
 /// Starts N' with the new points nearer than λ1 r, and Y with the others nearer than r (eq. 10).
 fn gather(p: u32) {
-    let near = params.lambda1 * ring.radius;
+    let near = ring.near;
     var walk = ball_walk(ring.center, ring.radius);
     for (var slot = next_entry(&walk); slot != NONE; slot = next_entry(&walk)) {
         if !visible(slot) {
@@ -121,9 +121,9 @@ fn complete(p: u32) {
     }
 }
 
-/// Whether an earlier class inserted the candidate.
+/// Whether an earlier class inserted the candidate, on the centre's side of the surface.
 fn visible(slot: u32) -> bool {
-    return atomicLoad(&states[slot]) - 1u < dispatch.x;
+    return atomicLoad(&states[slot]) - 1u < dispatch.x && same_side(candidate_normals[slot].xyz, ring.normal);
 }
 
 /// For an empty N': the candidate closest to the centre, the first of equals.

@@ -4,12 +4,9 @@
 
 @group(0) @binding(2) var<storage, read> points: array<Point>;
 @group(0) @binding(3) var<storage, read> blocks: array<vec2<u32>>;
-/// As in neighborhood_ball; the last word becomes NONE for removed members.
+/// As in neighborhood_ball; the last word gets the bit REMOVED for removed members.
 @group(0) @binding(4) var<storage, read_write> arena: array<vec4<u32>>;
 @group(0) @binding(5) var<storage, read_write> counters: Counters;
-
-/// Largest badness of a neighbour: 1, and a margin because regular grids give exactly that.
-const WORST_BADNESS: f32 = 1.001;
 
 /// The accurate neighbourhood N^g, or else the fuzzy one N^f.
 override accurate: bool = true;
@@ -23,7 +20,7 @@ fn neighborhood_badness(@builtin(global_invocation_id) id: vec3<u32>, @builtin(n
     let p = arena[i].w;
     // Removal is simultaneous: only the last word changes, and nobody else reads it.
     if p < params.points && is_behind(p, i) {
-        arena[i].w = NONE;
+        arena[i].w = p | REMOVED;
     }
     note_cut_loops(p);
 }
@@ -37,45 +34,19 @@ fn plane_vector(center: Point, i: u32) -> vec3<f32> {
 }
 
 /// Whether the badness w_i (eq. 8) of member i is above 1: it lies behind its successors and predecessors.
-/// The maximum is taken over signed squares of sin α_ij, which order the same and need no root per pair. It only
-/// rises, so the first values that are too large decide.
 fn is_behind(p: u32, i: u32) -> bool {
     let center = points[p];
     let block = blocks[p];
     let own = plane_vector(center, i);
     let x = bitcast<f32>(arena[i].y);
     let y = bitcast<f32>(arena[i].z);
-    var successor = -2.0;
-    var predecessor = -2.0;
+    var badness = Badness(-2.0, -2.0);
     for (var j = block.x; j < block.x + block.y; j++) {
-        let other = plane_vector(center, j);
-        let c = own - other;
-        let product = dot3(other, other) * dot3(c, c);
-        if i == j || product == 0.0 {
-            continue;
-        }
-        let along = dot3(other, c);
-        let sin_squared = along * abs(along) / product;
         // An exactly collinear point counts as successor.
         let succeeds = x * bitcast<f32>(arena[j].z) - y * bitcast<f32>(arena[j].y) >= 0.0;
-        if sin_squared <= select(predecessor, successor, succeeds) {
-            continue;
-        }
-        successor = select(successor, sin_squared, succeeds);
-        predecessor = select(sin_squared, predecessor, succeeds);
-        if plane_badness(successor) + plane_badness(predecessor) > WORST_BADNESS {
+        if i != j && is_bad(&badness, own, plane_vector(center, j), succeeds) {
             return true;
         }
     }
     return false;
-}
-
-/// w_ij from the signed square of sin α_ij; 0 for an empty set, which passes -2.
-fn plane_badness(sin_squared: f32) -> f32 {
-    let root = sqrt(abs(sin_squared));
-    let sine = select(root, -root, sin_squared < 0.0);
-    if sine < -params.sin_theta_f {
-        return 0.0;
-    }
-    return 0.5 * (sine / params.sin_theta_f + 1.0);
 }

@@ -15,6 +15,14 @@
 
 /// The accurate neighbourhood N^g, or else the fuzzy one N^f.
 override accurate: bool = true;
+/// Rules beyond the paper: see `Rules` in crates/points/src/params.rs.
+override opposite_pairs: bool = true;
+override narrow_cones: bool = true;
+
+/// Cosine of 150°: points whose normals differ more are no neighbours, though eq. 6 lets exactly opposite ones pass.
+const OPPOSITE: f32 = -0.8660254;
+/// Share of the bound of eq. 6 from which pairs are rejected.
+const NARROW: f32 = 0.7;
 
 @compute @workgroup_size(64)
 fn neighborhood_ball(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -77,12 +85,11 @@ fn consistent_ball(p: u32, first: u32) -> u32 {
         let normal = points[q].normal;
         let d = points[q].position - center.position;
         let d2 = dot3(d, d);
-        let u = d * (1.0 / sqrt(d2));
-        let consistent = abs(dot3(center.normal + normal, u)) <= 1.0 + dot3(center.normal, normal);
+        let is_consistent = consistent(d * (1.0 / sqrt(d2)), center.normal, normal);
         let x = dot3(d, frame.e1);
         let y = dot3(d, frame.e2);
         let q2 = x * x + y * y;
-        if !consistent || q2 <= 1e-12 * d2 {
+        if !is_consistent || q2 <= 1e-12 * d2 {
             continue;
         }
         var scale = inverse;
@@ -94,4 +101,13 @@ fn consistent_ball(p: u32, first: u32) -> u32 {
         members += 1u;
     }
     return members;
+}
+
+/// Eq. 6, printed inverted: whether neither point lies in the cone of apex the other and axis n0 + n1.
+fn consistent(u: vec3<f32>, n0: vec3<f32>, n1: vec3<f32>) -> bool {
+    let cosine = dot3(n0, n1);
+    let along = abs(dot3(n0 + n1, u));
+    // The margin is for flat surfaces, where both sides are rounding.
+    let bound = select(1.0 + cosine, NARROW * (1.0 + cosine) + 1e-6, narrow_cones);
+    return along <= bound && !(opposite_pairs && cosine < OPPOSITE);
 }

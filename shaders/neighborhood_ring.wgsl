@@ -3,7 +3,7 @@
 // One invocation per point. dispatch: first point, number of points.
 
 @group(0) @binding(2) var<storage, read> blocks: array<vec2<u32>>;
-/// As in neighborhood_badness. In the end the ring comes first, with bits of its angles as last words.
+/// As in neighborhood_natural. In the end the ring comes first, with bits of its angles as last words.
 @group(0) @binding(3) var<storage, read_write> arena: array<vec4<u32>>;
 /// Size of each ring at the index after its point's.
 @group(0) @binding(4) var<storage, read_write> ring_starts: array<u32>;
@@ -29,7 +29,7 @@ fn sort_ring(first: u32, members: u32) -> u32 {
     var size = 0u;
     for (var i = first; i < first + members; i++) {
         var member = arena[i];
-        if member.w == NONE {
+        if (member.w & REMOVED) != 0u && member.w != BACK {
             continue;
         }
         member.w = bitcast<u32>(direction_angle(bitcast<f32>(member.z), bitcast<f32>(member.y)));

@@ -1,6 +1,6 @@
 // The discard space (section 5, eq. 11). Twin: `discarded_by` in crates/reference/src/insertion.rs
 //
-// Expects `candidate_positions` and what new_ring.wgsl has.
+// Expects `candidate_positions`, `candidate_normals` and what new_ring.wgsl has.
 
 struct Closest {
     slot: u32,
@@ -24,7 +24,8 @@ fn try_discard(closest: ptr<function, Closest>, slot: u32, h: u32) {
     let d2 = dot3(d, d);
     let sphere = params.lambda2 * candidate_positions[h].w;
     let nearer = (*closest).slot == NONE || d2 < (*closest).squared || (d2 == (*closest).squared && h < (*closest).slot);
-    if d2 < sphere * sphere && nearer {
+    let sees = same_side(candidate_normals[slot].xyz, candidate_normals[h].xyz);
+    if d2 < sphere * sphere && nearer && sees {
         *closest = Closest(h, d2);
     }
 }

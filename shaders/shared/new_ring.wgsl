@@ -15,6 +15,9 @@ const MEMBER_WORDS: u32 = 3u;
 struct NewRing {
     center: vec3<f32>,
     radius: f32,
+    normal: vec3<f32>,
+    /// Within this distance new points are new neighbours.
+    near: f32,
     e1: vec3<f32>,
     inverse_radius: f32,
     e2: vec3<f32>,
@@ -34,6 +37,8 @@ fn open_ring(p: u32) {
     ring.center = points[p].position;
     ring.radius = points[p].radius;
     ring.inverse_radius = 1.0 / points[p].radius;
+    ring.normal = points[p].normal;
+    ring.near = near_radius(p);
     ring.e1 = frame.e1;
     ring.e2 = frame.e2;
     ring.size = 0u;

@@ -61,6 +61,11 @@ struct Counters {
 /// No entry: the largest index.
 const NONE: u32 = 0xffffffffu;
 
+// Last words of arena entries of the neighbourhood: the point whose member it is, with a bit that says that fuzzy planes
+// removed it; or what says that it came back.
+const REMOVED: u32 = 0x80000000u;
+const BACK: u32 = 0xfffffffeu;
+
 // States of a candidate slot; from 1 on, one more than the class that inserted it.
 const FREE: u32 = 0u;
 const USED: u32 = 0xfffffffeu;

@@ -10,7 +10,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
-use surfine::{Neighborhood, RefineParams};
+use surfine::{Neighborhood, RefineParams, Rules};
 use surfine_points::shapes::Shape;
 
 const EXAMPLES: &str = "\
@@ -101,6 +101,12 @@ pub(crate) struct RefineArgs {
     /// Take the paper's four simplifications: faster, for dense smooth clouds; implies fuzzy
     #[arg(long)]
     simplified: bool,
+    /// Keep to the text of the paper: without the rules for irregular samples and close sheets
+    #[arg(long)]
+    literal: bool,
+    /// Leave out one rule beyond the paper; may be given several times
+    #[arg(long, value_name = "RULE", value_parser = rule(), conflicts_with = "literal")]
+    without: Vec<String>,
     /// Tolerance angle of the fuzzy planes, above 0 up to 90 degrees
     #[arg(long, value_name = "DEG", default_value = "30", value_parser = theta_f)]
     #[arg(allow_negative_numbers = true)]
@@ -218,14 +224,22 @@ impl RefineArgs {
             NeighborhoodChoice::Accurate => Neighborhood::Accurate,
             NeighborhoodChoice::Fuzzy => Neighborhood::Fuzzy,
         };
+        let mut rules = if self.literal { Rules::LITERAL } else { Rules::ALL };
+        for name in &self.without {
+            *rules.get_mut(name).expect("the name was checked") = false;
+        }
         let &Self { levels, simplified, theta_f, theta_c, lambda1, lambda2, .. } = self;
-        RefineParams { levels, neighborhood, simplified, theta_f, theta_c, lambda1, lambda2 }
+        RefineParams { levels, neighborhood, simplified, theta_f, theta_c, lambda1, lambda2, rules }
     }
 }
 
 fn shape() -> impl TypedValueParser<Value = Shape> {
     let names = PossibleValuesParser::new(Shape::ALL.map(Shape::name));
     names.try_map(|name| name.parse::<Shape>())
+}
+
+fn rule() -> PossibleValuesParser {
+    PossibleValuesParser::new(Rules::ALL.named().map(|(name, _)| name))
 }
 
 fn levels(text: &str) -> Result<u32, String> {

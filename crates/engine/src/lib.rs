@@ -32,7 +32,7 @@ pub use gpu::{Gpu, Mode, adapters, choose_adapter};
 pub use kernel::{Kernel, WORKGROUP_SIZE, exact_spirv};
 pub use refiner::{GpuRefined, Refiner};
 pub use surfine_points::{
-    Attribute, LevelReport, Neighborhood, PointSet, Progress, RefineParams, Refined, Vec3,
+    Attribute, LevelReport, Neighborhood, PointSet, Progress, RefineParams, Refined, Rules, Vec3,
 };
 pub use wgpu;
 
@@ -45,7 +45,7 @@ struct Readme;
 pub mod testing {
     pub use crate::buffers::Buffer;
     pub use crate::commands::{Commands, Uniforms};
-    pub use crate::stages::Sizing;
+    pub use crate::stages::{Constants, Sizing, constants};
 
     /// Reads the first `count` values of a buffer.
     ///

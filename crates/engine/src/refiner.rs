@@ -4,7 +4,7 @@ use crate::buffers::{self, Buffer};
 use crate::commands::Uniforms;
 use crate::records::{Counters, Params, Point};
 use crate::scan::Scan;
-use crate::stages::{Buffers, Kernels, Sizing, Step, Variant};
+use crate::stages::{Buffers, Constants, Kernels, Sizing, Step, constants};
 use crate::{Error, Gpu, choose_adapter};
 use std::time::{Duration, Instant};
 use surfine_points::{
@@ -16,7 +16,7 @@ use surfine_points::{
 pub struct Refiner {
     gpu: Gpu,
     /// Compiled once for each variant that was asked for.
-    kernels: Vec<(Variant, Kernels)>,
+    kernels: Vec<(Constants, Kernels)>,
     uniforms: Uniforms,
     buffers: Buffers,
     scan: Scan,
@@ -89,9 +89,10 @@ impl Refiner {
     /// # Errors
     /// A kernel is refused.
     pub fn prepare(&mut self, params: &RefineParams) -> Result<(), Error> {
-        let variant = variant(params);
-        if self.kernels.iter().all(|(v, _)| *v != variant) {
-            self.kernels.push((variant, Kernels::new(&self.gpu, variant)?));
+        let constants = constants(params);
+        if self.kernels.iter().all(|(c, _)| *c != constants) {
+            let kernels = Kernels::new(&self.gpu, &constants)?;
+            self.kernels.push((constants, kernels));
         }
         Ok(())
     }
@@ -170,7 +171,7 @@ impl Refiner {
                 Params { points: count as u32, level, ..Params::new(params).with_grid(&shape) };
             let input = (level == 1).then_some((&shape, points));
             let earlier = count - points.len();
-            let mut report = self.run_step(variant(params), step, input, earlier, &mut clock)?;
+            let mut report = self.run_step(params, step, input, earlier, &mut clock)?;
             report.stages = clock.stop();
             level_sizes.push(report.points_out);
             // The area stays, so the spacing goes with the root of the number of points, and the grid with it.
@@ -187,15 +188,18 @@ impl Refiner {
     /// Runs the stages of one refinement step. The grid of the `input` is built here, later levels make theirs.
     fn run_step(
         &mut self,
-        variant: Variant,
+        refine: &RefineParams,
         params: Params,
         input: Option<(&GridShape, &PointSet)>,
         earlier: usize,
         clock: &mut Clock<'_>,
     ) -> Result<LevelReport, Error> {
         let Self { gpu, kernels, uniforms, buffers, scan, sizing } = self;
-        let (_, kernels) = kernels.iter().find(|(v, _)| *v == variant).expect("it was prepared");
-        let mut step = Step { gpu, kernels, uniforms, buffers, scan, sizing, params };
+        let constants = constants(refine);
+        let kernels = kernels.iter().find(|(c, _)| *c == constants);
+        let (_, kernels) = kernels.expect("they were prepared");
+        let rules = refine.rules;
+        let mut step = Step { gpu, kernels, uniforms, buffers, scan, sizing, rules, params };
         clock.start("grid");
         match input {
             Some((shape, points)) => {
@@ -214,6 +218,10 @@ impl Refiner {
         let classes = step.coloring()?;
         clock.start("insertion");
         let new = step.insertion(&classes)?;
+        if rules.next_ring {
+            clock.start("next_ring");
+            step.next_ring()?;
+        }
         clock.start("commit");
         step.commit(new, earlier as u32)?;
         let Counters { ball_low, ball_high, isolated, .. } = counters;
@@ -259,11 +267,6 @@ impl Refiner {
         let device_bytes = Some(device_bytes);
         Ok(Refined { points: refined, parents, level_sizes, reports, device_bytes })
     }
-}
-
-/// The kernels that parameters need.
-fn variant(params: &RefineParams) -> Variant {
-    (params.effective_neighborhood(), params.simplified)
 }
 
 /// Times the stages and tells the caller where the run stands.

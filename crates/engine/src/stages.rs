@@ -10,7 +10,7 @@ use crate::records::{Counters, Params, Point};
 use crate::scan::Scan;
 use crate::shaders::SHADERS;
 use crate::{Error, Gpu};
-use surfine_points::{Grid, Neighborhood};
+use surfine_points::{Grid, Neighborhood, RefineParams, Rules};
 
 /// Rounds of colouring between two looks at what is left.
 const ROUNDS: u32 = 16;
@@ -34,18 +34,24 @@ impl Default for Sizing {
     }
 }
 
-/// What kernels are compiled for, besides the device.
-pub(crate) type Variant = (Neighborhood, bool);
+/// Values of the kernels' `override`s.
+pub type Constants = Vec<(&'static str, f64)>;
 
-/// The kernels of a device for one variant.
+/// The values of the kernels' `override`s that parameters ask for.
+pub fn constants(params: &RefineParams) -> Constants {
+    let accurate = params.effective_neighborhood() == Neighborhood::Accurate;
+    let modes = [("accurate", accurate), ("simplified", params.simplified)];
+    let all = modes.into_iter().chain(params.rules.named());
+    all.map(|(name, on)| (name, f64::from(on))).collect()
+}
+
+/// The kernels of a device for one set of constants.
 #[derive(Debug)]
 pub(crate) struct Kernels(Vec<Kernel>);
 
 impl Kernels {
-    pub(crate) fn new(gpu: &Gpu, (neighborhood, simplified): Variant) -> Result<Self, Error> {
-        let accurate = neighborhood == Neighborhood::Accurate;
-        let constants = [("accurate", f64::from(accurate)), ("simplified", f64::from(simplified))];
-        Ok(Self(SHADERS.iter().map(|s| Kernel::new(gpu, s, &constants)).collect::<Result<_, _>>()?))
+    pub(crate) fn new(gpu: &Gpu, constants: &Constants) -> Result<Self, Error> {
+        Ok(Self(SHADERS.iter().map(|s| Kernel::new(gpu, s, constants)).collect::<Result<_, _>>()?))
     }
 
     pub(crate) fn get(&self, name: &str) -> &Kernel {
@@ -111,6 +117,7 @@ pub(crate) struct Step<'a> {
     pub(crate) buffers: &'a mut Buffers,
     pub(crate) scan: &'a mut Scan,
     pub(crate) sizing: &'a Sizing,
+    pub(crate) rules: Rules,
     pub(crate) params: Params,
 }
 
@@ -225,6 +232,8 @@ impl Step<'_> {
         let ball = commands.bind(k.get("neighborhood_ball"), &ball);
         let badness = [&b.points, &b.blocks, &b.arena, &b.counters];
         let badness = commands.bind(k.get("neighborhood_badness"), &badness);
+        let natural = [&b.blocks, &b.arena, &b.counters];
+        let natural = commands.bind(k.get("neighborhood_natural"), &natural);
         let ring = [&b.blocks, &b.arena, &b.ring_starts, &b.counters];
         let ring = commands.bind(k.get("neighborhood_ring"), &ring);
         let store = [&b.arena, &b.blocks, &b.ring_starts, &b.ring_entries];
@@ -235,6 +244,9 @@ impl Step<'_> {
             let words = [first, count, 0, 0];
             commands.dispatch(&ball, words, count);
             commands.dispatch(&badness, words, self.params.arena_words / 4);
+            if self.rules.natural_neighbors {
+                commands.dispatch(&natural, words, self.params.arena_words / 4);
+            }
             commands.dispatch(&ring, words, count);
             self.record_scan(&mut commands, &b.ring_starts, first, count + 1);
             commands.dispatch(&store, words, count);
@@ -304,7 +316,14 @@ impl Step<'_> {
         let mut commands = self.commands();
         commands.clear(&b.counters, words_of(&b.counters).into());
         commands.clear(&b.mirror_heads, n.into());
-        let inputs = [&b.points, &b.ring_starts, &b.candidate_positions, &b.owners, &b.grid];
+        let inputs = [
+            &b.points,
+            &b.ring_starts,
+            &b.candidate_positions,
+            &b.candidate_normals,
+            &b.owners,
+            &b.grid,
+        ];
         let lists = [&b.conflict_blocks, &b.conflict_entries];
         let kernel = self.kernels.get("conflicts");
         commands.run(kernel, &[&inputs[..], &lists, &[&b.counters]].concat(), [0; 4], n);
@@ -369,7 +388,7 @@ impl Step<'_> {
     /// `insertion`, class by class. `starts` is what [`Step::coloring`] returned. Returns the number of new points.
     pub(crate) fn insertion(&mut self, starts: &[u32]) -> Result<u32, Error> {
         let (n, slots) = (u64::from(self.params.points), u64::from(self.params.slots));
-        self.buffers.next_radii.reserve(self.gpu, WORD * (n + slots))?;
+        self.buffers.next_radii.reserve(self.gpu, 2 * WORD * (n + slots))?;
         self.buffers.new_indices.reserve(self.gpu, WORD * (slots + 1))?;
         self.scan.reserve(self.gpu, self.params.slots + 1)?;
         let largest = starts.windows(2).map(|bounds| bounds[1] - bounds[0]).max().unwrap_or(1);
@@ -392,7 +411,7 @@ impl Step<'_> {
         let Params { points, slots, .. } = self.params;
         let mut commands = self.commands();
         commands.clear(&b.counters, words_of(&b.counters).into());
-        commands.clear(&b.next_radii, u64::from(points) + u64::from(slots));
+        commands.clear(&b.next_radii, 2 * (u64::from(points) + u64::from(slots)));
         let inputs = [&b.points, &b.ring_starts, &b.candidate_positions, &b.candidate_normals];
         let lists = [&b.grid, &b.class_members];
         let outputs = [&b.states, &b.next_radii, &b.arena, &b.counters];
@@ -410,6 +429,39 @@ impl Step<'_> {
         let count = self.kernels.get("commit_count");
         commands.run(count, &[&b.states, &b.new_indices], [0; 4], slots);
         self.record_scan(&mut commands, &b.new_indices, 0, slots + 1);
+        commands.finish()
+    }
+
+    /// `next_ring`: radii that cover the next level's rings.
+    pub(crate) fn next_ring(&mut self) -> Result<(), Error> {
+        let n = self.params.points;
+        let mut part = n.clamp(1, self.sizing.chunk);
+        loop {
+            self.params.arena_words = words_of(&self.buffers.arena);
+            self.record_next_ring(part)?;
+            let (counters, _) = self.read(&[])?;
+            // Radii are maxima: a second run adds what the first one left out.
+            if self.make_room_in_arena(&counters, &mut part)? {
+                return Ok(());
+            }
+        }
+    }
+
+    fn record_next_ring(&self, part: u32) -> Result<(), Error> {
+        let b = &*self.buffers;
+        let n = self.params.points;
+        let mut commands = self.commands();
+        commands.clear(&b.counters, words_of(&b.counters).into());
+        let rings = [&b.points, &b.ring_starts, &b.ring_entries];
+        let candidates = [&b.candidate_positions, &b.candidate_normals, &b.grid, &b.states];
+        let outputs = [&b.next_radii, &b.arena, &b.counters];
+        let kernel = self.kernels.get("next_ring");
+        let bound = commands.bind(kernel, &[&rings[..], &candidates, &outputs].concat());
+        for first in (0..n).step_by(part as usize) {
+            let count = part.min(n - first);
+            commands.clear(&b.counters, 1);
+            commands.dispatch(&bound, [first, count, 0, 0], count);
+        }
         commands.finish()
     }
 

@@ -16,6 +16,6 @@ pub use glam::Vec3;
 pub use glam::{DVec3, UVec3};
 pub use grid::{Grid, GridShape};
 pub use model::{Completed, Model};
-pub use params::{Neighborhood, ParamError, RefineParams};
+pub use params::{Neighborhood, ParamError, RefineParams, Rules};
 pub use point_set::{Attribute, Interpolation, Invalid, PointSet, Values};
 pub use refined::{LevelReport, Progress, Refined};

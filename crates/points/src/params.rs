@@ -30,6 +30,92 @@ pub struct RefineParams {
     pub lambda1: f32,
     /// Share of a new point's radius that is its discard sphere (eq. 11), in [0, 1]. Default 1/2.
     pub lambda2: f32,
+    /// Rules beyond the paper. Default all; [`Rules::LITERAL`] is the paper's text.
+    pub rules: Rules,
+}
+
+/// Rules that the paper doesn't have, for irregular samples and sheets that lie close to each other. Each is measured in
+/// `docs/algorithm.md`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Rules {
+    /// Points whose normals differ by more than 150° are no neighbours.
+    pub opposite_pairs: bool,
+    /// Eq. 6 rejects pairs from 0.7 of its bound on.
+    pub narrow_cones: bool,
+    /// A triangle that a corner's normal leaves by more than 110° has no candidate.
+    pub steep_faces: bool,
+    /// The normal of a sliver is interpolated from its corners.
+    pub sliver_normals: bool,
+    /// New points on another sheet, with a normal turned by 90° or more, are neither new neighbours nor discard.
+    pub own_side: bool,
+    /// In the first step a radius counts as no more than 1.25 times the distance to the farthest neighbour when new
+    /// neighbours are sought.
+    pub first_radii: bool,
+    /// In gaps of a ring from 100° on, members that the fuzzy planes removed come back if they are natural neighbours.
+    pub natural_neighbors: bool,
+    /// Radii cover the ring that a point has at the next level.
+    pub next_ring: bool,
+}
+
+impl Rules {
+    /// All of them.
+    pub const ALL: Self = Self {
+        opposite_pairs: true,
+        narrow_cones: true,
+        steep_faces: true,
+        sliver_normals: true,
+        own_side: true,
+        first_radii: true,
+        natural_neighbors: true,
+        next_ring: true,
+    };
+
+    /// None of them: the paper's text.
+    pub const LITERAL: Self = Self {
+        opposite_pairs: false,
+        narrow_cones: false,
+        steep_faces: false,
+        sliver_normals: false,
+        own_side: false,
+        first_radii: false,
+        natural_neighbors: false,
+        next_ring: false,
+    };
+
+    /// Each rule's name and whether it is on: the names of the kernels' `override`s.
+    pub fn named(&self) -> [(&'static str, bool); 8] {
+        [
+            ("opposite_pairs", self.opposite_pairs),
+            ("narrow_cones", self.narrow_cones),
+            ("steep_faces", self.steep_faces),
+            ("sliver_normals", self.sliver_normals),
+            ("own_side", self.own_side),
+            ("first_radii", self.first_radii),
+            ("natural_neighbors", self.natural_neighbors),
+            ("next_ring", self.next_ring),
+        ]
+    }
+
+    /// The rule of that name, to switch it.
+    pub fn get_mut(&mut self, name: &str) -> Option<&mut bool> {
+        match name {
+            "opposite_pairs" => Some(&mut self.opposite_pairs),
+            "narrow_cones" => Some(&mut self.narrow_cones),
+            "steep_faces" => Some(&mut self.steep_faces),
+            "sliver_normals" => Some(&mut self.sliver_normals),
+            "own_side" => Some(&mut self.own_side),
+            "first_radii" => Some(&mut self.first_radii),
+            "natural_neighbors" => Some(&mut self.natural_neighbors),
+            "next_ring" => Some(&mut self.next_ring),
+            _ => None,
+        }
+    }
+}
+
+impl Default for Rules {
+    fn default() -> Self {
+        Self::ALL
+    }
 }
 
 impl Default for RefineParams {
@@ -42,6 +128,7 @@ impl Default for RefineParams {
             theta_c: 89.0 * PI / 180.0,
             lambda1: 0.577_350_26,
             lambda2: 0.5,
+            rules: Rules::ALL,
         }
     }
 }

@@ -11,6 +11,9 @@ use surfine_points::RefineParams;
 /// A fan triangle needs a gap below π(1 - 1e-4) radians: at π the fan has no triangle there.
 pub const WIDEST_GAP: f32 = 3.141_278_5;
 
+/// Radii exceed the distance to the farthest natural neighbour by this factor.
+pub const NATURAL: f32 = 1.25;
+
 /// The possible new points of all fans, one for each ring entry (slot).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Candidates {
@@ -22,6 +25,8 @@ pub struct Candidates {
     pub rho: Vec<f32>,
     /// The point whose fan holds the slot.
     pub owners: Vec<u32>,
+    /// Of each point: within this distance new points are new neighbours (section 5).
+    pub near: Vec<f32>,
 }
 
 impl Candidates {
@@ -43,7 +48,8 @@ pub fn candidates(level: &Level, rings: &Rings, params: &RefineParams) -> Candid
             (0..ring.len()).map(|i| candidate(level, rings, params, p, i)).collect()
         })
         .collect();
-    let mut result = Candidates::default();
+    let near = (0..level.len()).map(|p| near_radius(level, rings, params, p)).collect();
+    let mut result = Candidates { near, ..Candidates::default() };
     for (p, fan) in fans.into_iter().enumerate() {
         for (position, normal, rho) in fan {
             result.positions.push(position);
@@ -53,6 +59,21 @@ pub fn candidates(level: &Level, rings: &Rings, params: &RefineParams) -> Candid
         }
     }
     result
+}
+
+/// `λ1 r`. The radii of the input may be too large, and would take far points for new neighbours: in the first step they
+/// count as no more than [`NATURAL`] times the distance to the farthest neighbour.
+fn near_radius(level: &Level, rings: &Rings, params: &RefineParams, p: usize) -> f32 {
+    let radius = level.radii[p];
+    if !params.rules.first_radii || level.step > 0 || rings.ring(p).is_empty() {
+        return params.lambda1 * radius;
+    }
+    let mut farthest = 0.0f32;
+    for entry in rings.ring(p) {
+        let d = level.positions[entry.id as usize] - level.positions[p];
+        farthest = farthest.max(d.dot(d));
+    }
+    params.lambda1 * radius.min(NATURAL * farthest.sqrt())
 }
 
 /// Position, normal and ρ of the candidate of a point's ring entries `i` and `i + 1`.
@@ -74,11 +95,14 @@ fn candidate(
     if rho == 0.0 {
         return NONE;
     }
+    if params.rules.steep_faces && pn_triangle::is_steep(corners, rho) {
+        return NONE;
+    }
     let normal = if params.simplified {
         // The triangle must have an area; its curved normal is taken when it is inserted.
         pn_triangle::flat_normal(corners, rho)
     } else {
-        pn_triangle::center_normal(corners, rho)
+        pn_triangle::new_normal(corners, rho, params.rules)
     };
     normal.map_or(NONE, |normal| (position, normal, rho))
 }

@@ -16,6 +16,7 @@ pub fn commit(
     params: &RefineParams,
 ) -> Vec<[u32; 3]> {
     let mut parents = Vec::new();
+    level.step += 1;
     level.radii.clone_from(&insertion.radii);
     for slot in (0..rings.len()).filter(|&s| insertion.inserted[s]) {
         let owner = candidates.owners[slot] as usize;
@@ -25,7 +26,7 @@ pub fn commit(
             // Section 7, simplification 4: the displacement is computed for inserted points only.
             let corners = triangle.map(|c| level.corner(c));
             // The candidate has the normal of the flat triangle.
-            let normal = pn_triangle::center_normal(corners, candidates.rho[slot])
+            let normal = pn_triangle::new_normal(corners, candidates.rho[slot], params.rules)
                 .unwrap_or(candidates.normals[slot]);
             (pn_triangle::displaced_center(corners), normal)
         } else {

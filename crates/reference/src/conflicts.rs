@@ -65,7 +65,7 @@ fn found_from(
     p: usize,
 ) -> Vec<u32> {
     let center = level.positions[p];
-    let near = params.lambda1 * level.radii[p];
+    let near = candidates.near[p];
     let own: Vec<usize> = rings.slots(p).filter(|&s| candidates.exists(s)).collect();
     let mut reach = near;
     for &s in &own {

@@ -59,6 +59,13 @@ pub struct Stage<'a> {
     pub params: &'a RefineParams,
 }
 
+impl Stage<'_> {
+    /// Whether normals are on one side of the surface, so that their points see each other.
+    pub(crate) fn same_side(&self, a: Vec3, b: Vec3) -> bool {
+        !self.params.rules.own_side || a.dot(b) > 0.0
+    }
+}
+
 /// The result of refining one point.
 struct Refinement {
     inserted: Vec<u32>,
@@ -122,6 +129,9 @@ struct Member {
 struct Fan<'a> {
     stage: Stage<'a>,
     center: Vec3,
+    normal: Vec3,
+    /// Within this distance new points are new neighbours.
+    near: f32,
     e1: Vec3,
     e2: Vec3,
     radius: f32,
@@ -176,11 +186,21 @@ fn refine_point(stage: Stage<'_>, inserted: &[bool], p: u32) -> Refinement {
 impl<'a> Fan<'a> {
     fn new(stage: Stage<'a>, p: u32) -> Self {
         let p = p as usize;
-        let (e1, e2) = tangent_frame(stage.level.normals[p]);
+        let normal = stage.level.normals[p];
+        let (e1, e2) = tangent_frame(normal);
         let radius = stage.level.radii[p];
-        let inverse_radius = 1.0 / radius;
-        let center = stage.level.positions[p];
-        Self { stage, center, e1, e2, radius, inverse_radius, ring: Vec::new(), outer: Vec::new() }
+        Self {
+            stage,
+            center: stage.level.positions[p],
+            normal,
+            near: stage.candidates.near[p],
+            e1,
+            e2,
+            radius,
+            inverse_radius: 1.0 / radius,
+            ring: Vec::new(),
+            outer: Vec::new(),
+        }
     }
 
     /// A new point relative to the centre.
@@ -196,10 +216,11 @@ impl<'a> Fan<'a> {
     /// Starts N' with the new points nearer than λ1·r, and Y with the others nearer than r (eq. 10).
     fn gather(&mut self, inserted: &[bool]) {
         let radius = self.radius;
-        let near = self.stage.params.lambda1 * radius;
+        let near = self.near;
         let mut ring = Vec::new();
         self.stage.candidate_grid.visit_ball(self.center, radius, |slot| {
-            if !inserted[slot as usize] {
+            let normal = self.stage.candidates.normals[slot as usize];
+            if !inserted[slot as usize] || !self.stage.same_side(normal, self.normal) {
                 return;
             }
             let d = self.offset(slot);
@@ -304,12 +325,14 @@ impl<'a> Fan<'a> {
     /// The new point of Y or N' whose discard sphere (eq. 11) holds the candidate: the closest of them, if any.
     fn discarded_by(&self, slot: u32) -> Option<u32> {
         let x = self.stage.candidates.positions[slot as usize];
+        let normal = self.stage.candidates.normals[slot as usize];
         let mut closest: Option<(u32, f32)> = None;
         for h in self.outer.iter().copied().chain(self.ring.iter().map(|m| m.slot)) {
             let d = x - self.stage.candidates.positions[h as usize];
             let d2 = d.dot(d);
             let sphere = self.stage.params.lambda2 * self.stage.candidates.rho[h as usize];
             if d2 < sphere * sphere
+                && self.stage.same_side(normal, self.stage.candidates.normals[h as usize])
                 && closest.is_none_or(|(slot, least)| d2 < least || (d2 == least && h < slot))
             {
                 closest = Some((h, d2));

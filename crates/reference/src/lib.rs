@@ -11,6 +11,7 @@ pub mod conflicts;
 pub mod insertion;
 pub mod math;
 pub mod neighborhood;
+pub mod next_ring;
 pub mod pn_triangle;
 mod refine;
 
@@ -32,6 +33,8 @@ pub struct Level {
     pub normals: Vec<Vec3>,
     /// Radii.
     pub radii: Vec<f32>,
+    /// Refinement steps that led here: 0 for the input.
+    pub step: u32,
 }
 
 impl Level {
@@ -41,6 +44,7 @@ impl Level {
             positions: points.positions.clone(),
             normals: points.unit_normals(),
             radii: points.radii.clone(),
+            step: 0,
         }
     }
 

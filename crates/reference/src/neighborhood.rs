@@ -1,14 +1,21 @@
 //! One-ring neighbourhoods (section 4). Twin: `shaders/neighborhood.wgsl`.
 
 use crate::Level;
-use crate::math::{direction_angle, is_apart, tangent_frame};
+use crate::math::{TAU, direction_angle, is_apart, tangent_frame};
 use crate::pn_triangle::geodesic_distance;
 use glam::Vec3;
 use rayon::prelude::*;
-use surfine_points::{Grid, Neighborhood, RefineParams};
+use surfine_points::{Grid, Neighborhood, RefineParams, Rules};
 
 /// Largest badness of a neighbour: 1, and a margin because regular grids give exactly that.
 pub const WORST_BADNESS: f32 = 1.001;
+
+/// Cosine of 150°: points whose normals differ more are no neighbours, though eq. 6 lets exactly opposite ones pass.
+pub const OPPOSITE: f32 = -0.866_025_4;
+/// Share of the bound of eq. 6 from which pairs are rejected.
+pub const NARROW: f32 = 0.7;
+/// A ring gap from 100° on may miss a natural neighbour, radians.
+pub const OPEN_GAP: f32 = 1.745_329_3;
 
 /// A corner of a triangle fan.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,14 +60,37 @@ impl Rings {
 }
 
 /// A member of `N^E` seen from the centre, lengths in units of the centre's radius.
-struct Neighbor {
-    id: u32,
+pub(crate) struct Neighbor {
+    pub(crate) id: u32,
     /// The vector whose fuzzy plane is tested: `q'_i - p` (eq. 9) in the tangent frame for the accurate neighbourhood,
     /// `p_i - p` for the fuzzy one.
     offset: Vec3,
     /// Orthogonal projection `q_i`, up to a positive factor: only its direction counts.
-    x: f32,
-    y: f32,
+    pub(crate) x: f32,
+    pub(crate) y: f32,
+}
+
+impl Neighbor {
+    /// A neighbour at offset `d` on the tangent plane of the first normal's point; `None` where it has no direction there.
+    pub(crate) fn new(
+        id: u32,
+        d: Vec3,
+        (e1, e2): (Vec3, Vec3),
+        inverse: f32,
+        [normal, other]: [Vec3; 2],
+        params: &RefineParams,
+    ) -> Option<Self> {
+        let (x, y) = (d.dot(e1), d.dot(e2));
+        let q2 = x * x + y * y;
+        if q2 <= 1e-12 * d.dot(d) {
+            return None;
+        }
+        if params.effective_neighborhood() == Neighborhood::Fuzzy {
+            return Some(Self { id, offset: d * inverse, x: x * inverse, y: y * inverse });
+        }
+        let s = (geodesic_distance(d, normal, other) * inverse) / q2.sqrt();
+        Some(Self { id, offset: Vec3::new(x * s, y * s, 0.0), x: x * s, y: y * s })
+    }
 }
 
 /// Computes the one-ring of every point.
@@ -89,9 +119,8 @@ fn consistent_ball(
     p: usize,
 ) -> (usize, Vec<Neighbor>) {
     let (center, normal, radius) = (level.positions[p], level.normals[p], level.radii[p]);
-    let (e1, e2) = tangent_frame(normal);
+    let frame = tangent_frame(normal);
     let inverse = 1.0 / radius;
-    let accurate = params.effective_neighborhood() == Neighborhood::Accurate;
     let mut size = 0;
     let mut ball = Vec::new();
     grid.visit_ball(center, radius, |id| {
@@ -103,31 +132,35 @@ fn consistent_ball(
         }
         size += 1;
         let other = level.normals[id as usize];
-        let (x, y) = (d.dot(e1), d.dot(e2));
-        let q2 = x * x + y * y;
-        if !consistent(d, d2, normal, other) || q2 <= 1e-12 * d2 {
-            return;
-        }
-        if accurate {
-            let s = (geodesic_distance(d, normal, other) * inverse) / q2.sqrt();
-            ball.push(Neighbor { id, offset: Vec3::new(x * s, y * s, 0.0), x: x * s, y: y * s });
-        } else {
-            ball.push(Neighbor { id, offset: d * inverse, x: x * inverse, y: y * inverse });
+        if consistent(d, d2, normal, other, params.rules) {
+            ball.extend(Neighbor::new(id, d, frame, inverse, [normal, other], params));
         }
     });
     (size, ball)
 }
 
 /// Eq. 6, printed inverted: whether neither point lies in the cone of apex the other and axis `n0 + n1`.
-fn consistent(d: Vec3, d2: f32, n0: Vec3, n1: Vec3) -> bool {
+fn consistent(d: Vec3, d2: f32, n0: Vec3, n1: Vec3, rules: Rules) -> bool {
     let u = d * (1.0 / d2.sqrt());
-    (n0 + n1).dot(u).abs() <= 1.0 + n0.dot(n1)
+    let cosine = n0.dot(n1);
+    if rules.opposite_pairs && cosine < OPPOSITE {
+        return false;
+    }
+    let along = (n0 + n1).dot(u).abs();
+    // The margin is for flat surfaces, where both sides are rounding.
+    if rules.narrow_cones { along <= NARROW * (1.0 + cosine) + 1e-6 } else { along <= 1.0 + cosine }
 }
 
 /// Removes the members that lie behind others (eq. 8) and sorts the rest around the centre.
 fn one_ring(ball: &[Neighbor], params: &RefineParams) -> Vec<RingEntry> {
+    let mut kept: Vec<bool> =
+        (0..ball.len()).map(|i| !is_behind(ball, i, params.sin_theta_f())).collect();
+    if params.rules.natural_neighbors {
+        let natural = |i: usize| kept[i] || is_in_open_gap(ball, &kept, i) && is_natural(ball, i);
+        kept = (0..ball.len()).map(natural).collect();
+    }
     let mut ring: Vec<(RingEntry, f32)> = (0..ball.len())
-        .filter(|&i| !is_behind(ball, i, params.sin_theta_f()))
+        .filter(|&i| kept[i])
         .map(|i| {
             let Neighbor { id, x, y, .. } = ball[i];
             (RingEntry { id, angle: direction_angle(y, x) }, x * x + y * y)
@@ -139,11 +172,47 @@ fn one_ring(ball: &[Neighbor], params: &RefineParams) -> Vec<RingEntry> {
     ring.into_iter().map(|(entry, _)| entry).collect()
 }
 
+/// Whether the kept members next to member `i` on both sides leave a gap that may miss a neighbour.
+fn is_in_open_gap(ball: &[Neighbor], kept: &[bool], i: usize) -> bool {
+    let (mut after, mut before) = (TAU, TAU);
+    for (other, _) in ball.iter().zip(kept).filter(|(_, kept)| **kept) {
+        let along = ball[i].x * other.x + ball[i].y * other.y;
+        let across = ball[i].x * other.y - ball[i].y * other.x;
+        after = after.min(direction_angle(across, along));
+        before = before.min(direction_angle(-across, along));
+    }
+    after + before >= OPEN_GAP
+}
+
+/// Whether member `i` is a natural neighbour of the centre on its tangent plane: whether a piece of their bisector is
+/// nearer to both than to every other member.
+fn is_natural(ball: &[Neighbor], i: usize) -> bool {
+    let (x, y) = (ball[i].x, ball[i].y);
+    // Places on the bisector are q/2 + t (-y, x).
+    let (mut low, mut high) = (f32::MIN, f32::MAX);
+    for (j, other) in ball.iter().enumerate() {
+        let along = x * other.x + y * other.y;
+        let across = x * other.y - y * other.x;
+        let room = 0.5 * ((other.x * other.x + other.y * other.y) - along);
+        if j == i {
+            continue;
+        }
+        if across > 0.0 {
+            high = high.min(room / across);
+        } else if across < 0.0 {
+            low = low.max(room / across);
+        } else if room < 0.0 {
+            return false;
+        }
+    }
+    low < high
+}
+
 /// Whether the badness `w_i` (eq. 8) of member `i` is above 1: it lies behind its successors and predecessors.
 ///
 /// The maximum is taken over signed squares of `sin α_ij`, which order the same and need no root per pair. It only
 /// rises, so the first values that are too large decide.
-fn is_behind(ball: &[Neighbor], i: usize, sin_theta_f: f32) -> bool {
+pub(crate) fn is_behind(ball: &[Neighbor], i: usize, sin_theta_f: f32) -> bool {
     let (mut successor, mut predecessor) = (-2.0f32, -2.0f32);
     for (j, other) in ball.iter().enumerate() {
         let c = ball[i].offset - other.offset;

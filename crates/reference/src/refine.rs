@@ -6,6 +6,7 @@ use crate::commit::commit;
 use crate::conflicts::{Graph, conflicts};
 use crate::insertion::{Insertion, Order, Stage, insertion};
 use crate::neighborhood::{Rings, neighborhood};
+use crate::next_ring::next_ring;
 use crate::{Level, NO_POINT};
 use std::fmt;
 use std::time::Instant;
@@ -155,8 +156,14 @@ pub fn run_level(
         candidate_grid: &candidate_grid,
         params,
     };
-    let insertion = insertion(inputs, &classes, order);
+    let mut insertion = insertion(inputs, &classes, order);
     stage("insertion", begin);
+
+    if params.rules.next_ring {
+        let begin = start("next_ring");
+        next_ring(inputs, &mut insertion);
+        stage("next_ring", begin);
+    }
 
     report.ball_neighbors = rings.ball_neighbors;
     report.ring_neighbors = rings.len() as u64;
