@@ -9,8 +9,6 @@
 
 /// A ring gap from 100° on may miss a natural neighbour, radians.
 const OPEN_GAP: f32 = 1.7453293;
-/// The largest number.
-const LARGEST: f32 = 3.4028235e38;
 
 @compute @workgroup_size(64)
 fn neighborhood_natural(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -46,14 +44,14 @@ fn is_in_open_gap(p: u32, i: u32) -> bool {
     return after + before >= OPEN_GAP;
 }
 
-/// Whether member i is a natural neighbour of the centre on its tangent plane: whether a piece of their bisector is nearer
-/// to both than to every other member.
+/// Whether member i is a natural neighbour of the centre on its tangent plane: whether a piece of their bisector, no
+/// farther from its middle than the radius, is nearer to both than to every other member.
 fn is_natural(p: u32, i: u32) -> bool {
     let block = blocks[p];
     let own = plane_place(i);
     // Places on the bisector are own / 2 + t (-own.y, own.x).
-    var low = -LARGEST;
-    var high = LARGEST;
+    var high = 1.0 / sqrt(own.x * own.x + own.y * own.y);
+    var low = -high;
     for (var j = block.x; j < block.x + block.y; j++) {
         if j == i {
             continue;

@@ -11,10 +11,13 @@ use std::fs;
 use std::mem::offset_of;
 use std::path::{Path, PathBuf};
 use surfine::shaders::{SHADERS, Shader};
+use surfine::testing::constants;
 use surfine::{RefineParams, exact_spirv, records};
 
 /// The constants that the engine gives to every kernel that declares them.
-const OVERRIDES: [&str; 2] = ["accurate", "simplified"];
+fn known_constants() -> Vec<&'static str> {
+    constants(&RefineParams::default()).into_iter().map(|(name, _)| name).collect()
+}
 
 /// A kernel's module, as the engine parses it.
 fn parse(shader: &Shader) -> Module {
@@ -143,12 +146,14 @@ fn constants_are_known_and_reach_the_code() {
         let module = parse(shader);
         let names = overrides(&module);
         // The engine gives no other ones and leaves out those that a kernel does not declare.
-        assert!(names.iter().all(|n| OVERRIDES.contains(n)), "{}: {names:?}", shader.name);
+        assert!(names.iter().all(|n| known_constants().contains(n)), "{}: {names:?}", shader.name);
         let [off, on] = exact_variants(shader);
         assert_eq!(off != on, !names.is_empty(), "{}: a constant changes nothing", shader.name);
         declared.extend(names.into_iter().map(str::to_owned));
     }
-    assert!(declared.iter().eq(OVERRIDES), "{declared:?}");
+    // Rules that have a kernel of their own: the host leaves it out.
+    declared.extend(["natural_neighbors", "next_ring"].map(str::to_owned));
+    assert_eq!(declared, known_constants().into_iter().map(str::to_owned).collect());
 }
 
 /// Words of the SPIR-V header.

@@ -3,11 +3,16 @@
 use std::path::Path;
 
 use surfine_points::shapes::{Sampling, Shape, natural_radii, sample, square_grid};
-use surfine_points::{PointSet, RefineParams, Refined, Vec3, ply};
+use surfine_points::{PointSet, RefineParams, Refined, Rules, Vec3, ply};
 
 /// Default parameters at a number of levels.
 pub(crate) fn levels(levels: u32) -> RefineParams {
     RefineParams { levels, ..RefineParams::default() }
+}
+
+/// That many levels by the paper's text alone.
+pub(crate) fn literal(levels: u32) -> RefineParams {
+    RefineParams { levels, rules: Rules::LITERAL, ..RefineParams::default() }
 }
 
 /// Refines points that are fit for it.

@@ -6,7 +6,7 @@ use surfine_points::{
 };
 use surfine_reference::Error;
 
-use crate::clouds::{blue_noise, joined, levels, random, refine, with_radii_times};
+use crate::clouds::{blue_noise, joined, levels, literal, random, refine, with_radii_times};
 use crate::measure::{bits, growths, mean, vector_bits};
 
 /// A cloud in the plane z = 0 whose points have one radius.
@@ -126,7 +126,7 @@ fn a_point_far_away_is_left_alone_and_disturbs_nothing() {
 }
 
 #[test]
-fn radii_as_large_as_the_cloud_do_no_harm_but_growth() {
+fn radii_as_large_as_the_cloud_do_no_harm() {
     for cloud in [blue_noise(Shape::Sphere, 150, 1), random(Shape::Saddle, 150, 1)] {
         let mut cloud = cloud;
         cloud.radii.fill(50.0);
@@ -134,8 +134,12 @@ fn radii_as_large_as_the_cloud_do_no_harm_but_growth() {
         assert_sound(&refined);
         assert_eq!(refined.reports[0].ball_neighbors, 150 * 149, "every point sees every other");
         // All new points count as new neighbours of all, so few are missed. Measured 1.38 to 1.57.
+        for growth in growths(&refine(&cloud, &literal(2))) {
+            assert!((1.2..2.0).contains(&growth), "growth {growth} by the text");
+        }
+        // But the first step does not believe such radii.
         for growth in growths(&refined) {
-            assert!((1.2..2.0).contains(&growth), "growth {growth}");
+            assert!(growth > 2.3, "growth {growth}");
         }
     }
 }

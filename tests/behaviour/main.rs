@@ -12,5 +12,6 @@ mod degenerate;
 mod measure;
 mod old_points;
 mod quality;
+mod rules;
 mod scale;
 mod schedule;

@@ -1,7 +1,7 @@
 //! The clouds that conformance is shown on.
 
 use std::path::{Path, PathBuf};
-use surfine::{Neighborhood, PointSet, RefineParams, Vec3};
+use surfine::{Neighborhood, PointSet, RefineParams, Rules, Vec3};
 use surfine_points::ply;
 use surfine_points::shapes::{Sampling, Shape, icosphere, sample, square_grid};
 
@@ -62,12 +62,20 @@ pub(crate) fn whole() -> Vec<(Cloud, u32)> {
     clouds
 }
 
-/// Accurate, fuzzy and simplified.
-pub(crate) fn variants() -> [RefineParams; 3] {
+/// Accurate, fuzzy, simplified, and the paper's text.
+pub(crate) fn variants() -> [RefineParams; 4] {
     let accurate = RefineParams::default();
     let fuzzy = RefineParams { neighborhood: Neighborhood::Fuzzy, ..accurate.clone() };
     let simplified = RefineParams { simplified: true, ..accurate.clone() };
-    [accurate, fuzzy, simplified]
+    let literal = RefineParams { rules: Rules::LITERAL, ..accurate.clone() };
+    [accurate, fuzzy, simplified, literal]
+}
+
+/// What tells a variant from the others.
+pub(crate) fn describe(params: &RefineParams) -> String {
+    let RefineParams { neighborhood, simplified, rules, .. } = params;
+    let rules = if *rules == Rules::LITERAL { "literal" } else { "all rules" };
+    format!("{neighborhood:?}, simplified {simplified}, {rules}")
 }
 
 /// Models that are too large or too unfree for the repository, where they are at hand.

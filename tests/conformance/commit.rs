@@ -13,8 +13,7 @@ fn the_next_level_is_that_of_the_reference() {
         let insertion = &step.state.insertion;
         let mut expected = step.level.clone();
         let state = &step.state;
-        let parents =
-            commit(&mut expected, &state.rings, &state.candidates, insertion, &step.refine);
+        let parents = commit(&mut expected, state, &step.refine);
 
         // A state from 1 on is one more than the class that inserted the slot.
         let of_slot = |s: usize| match (insertion.inserted[s], state.candidates.exists(s)) {
@@ -41,7 +40,9 @@ fn the_next_level_is_that_of_the_reference() {
         let normals = device.buffer("normals", &step.candidate_normals());
         let owners = device.buffer("owners", &state.candidates.owners);
         let indices = device.buffer("indices", &summed);
-        let radii: Vec<f32> = [insertion.radii.as_slice(), &insertion.slot_radii].concat();
+        let covers = &state.covers;
+        let radii = [&insertion.radii, &insertion.slot_radii, &covers.radii, &covers.slot_radii];
+        let radii: Vec<f32> = radii.into_iter().flatten().copied().collect();
         let radii = device.buffer("radii", &radii);
         let found_parents = device.output::<[u32; 3]>("parents", parents.len());
         let rings = [&points, &ring_starts, &ring_entries];
@@ -67,7 +68,8 @@ fn the_next_level_is_that_of_the_reference() {
         must(compare(&what("normals"), &flat(&expected.normals), &normals, normal, 1.0));
         must(compare(&what("radii"), &expected.radii, &radii, crate::tolerance::EXACT, 1.0));
         let levels: Vec<u32> = found.iter().map(|p| p.level).collect();
-        let expected: Vec<u32> = (0..found.len()).map(|i| u32::from(i >= n)).collect();
+        let new = step.level.step + 1;
+        let expected: Vec<u32> = (0..found.len()).map(|i| if i < n { 0 } else { new }).collect();
         must(compare_equal(&what("levels"), &expected, &levels));
     }
 }

@@ -19,6 +19,7 @@ impl ConflictBuffers {
         let points = device.buffer("points", &step.points());
         let starts = device.buffer("starts", &step.state.rings.starts);
         let candidates = device.buffer("candidates", &step.candidate_positions());
+        let normals = device.buffer("normals", &step.candidate_normals());
         let owners = device.buffer("owners", &step.state.candidates.owners);
         let grid = device.buffer("grid", &grid_words(&step.state.candidate_grid));
         let blocks = device.output::<[u32; 2]>("blocks", n);
@@ -26,7 +27,7 @@ impl ConflictBuffers {
         let heads = device.output::<u32>("heads", n);
         let links = device.output::<[u32; 2]>("links", CONFLICT_ENTRIES);
         let counters = device.output::<u32>("counters", size_of::<Counters>() / 4);
-        let inputs = [&points, &starts, &candidates, &owners, &grid];
+        let inputs = [&points, &starts, &candidates, &normals, &owners, &grid];
         let lists = [&blocks, &entries];
         device.run(step.run("conflicts", [0; 4], n), &[&inputs[..], &lists, &[&counters]].concat());
         let mirror = [&blocks, &entries, &heads, &links, &counters];

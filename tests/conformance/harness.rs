@@ -1,13 +1,13 @@
 //! One device for all tests, single kernels on it, and the comparator.
 
-use crate::clouds::{small, variants};
+use crate::clouds::{describe, small, variants};
 use crate::tolerance::{EXACT, Tolerance};
 use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard, OnceLock};
 use surfine::records::{Params, Point};
 use surfine::shaders::SHADERS;
-use surfine::testing::{Buffer, Commands, Uniforms, read};
-use surfine::{Gpu, Kernel, Mode, Neighborhood, RefineParams, Refiner};
+use surfine::testing::{Buffer, Commands, Uniforms, constants, read};
+use surfine::{Gpu, Kernel, Mode, RefineParams, Refiner};
 use surfine_points::Grid;
 use surfine_reference::commit::commit;
 use surfine_reference::insertion::Order;
@@ -18,7 +18,8 @@ pub(crate) struct Device {
     pub refiner: Refiner,
     uniforms: Uniforms,
     /// Kernels compiled so far, by name and constants.
-    kernels: HashMap<(String, bool, bool), Kernel>,
+    /// By name and the values of the constants.
+    kernels: HashMap<(String, Vec<bool>), Kernel>,
 }
 
 /// The shared device. Tests take turns on it: they measure nothing, and software drivers use all cores anyway.
@@ -83,15 +84,12 @@ impl Device {
 
     /// Runs one kernel once.
     pub(crate) fn run(&mut self, run: Run<'_>, buffers: &[&Buffer]) {
-        let accurate = run.refine.effective_neighborhood() == Neighborhood::Accurate;
-        let simplified = run.refine.simplified;
-        let key = (run.kernel.to_owned(), accurate, simplified);
+        let key =
+            (run.kernel.to_owned(), constants(run.refine).iter().map(|c| c.1 == 1.0).collect());
         let gpu = self.refiner.gpu();
         let kernel = self.kernels.entry(key).or_insert_with(|| {
             let shader = SHADERS.iter().find(|s| s.name == run.kernel).expect("it is in the table");
-            let constants =
-                [("accurate", f64::from(accurate)), ("simplified", f64::from(simplified))];
-            Kernel::new(gpu, shader, &constants).expect("the kernel compiles")
+            Kernel::new(gpu, shader, &constants(run.refine)).expect("the kernel compiles")
         });
         self.uniforms.set(gpu, &run.params);
         let mut commands = Commands::new(gpu, &self.uniforms);
@@ -116,12 +114,9 @@ pub(crate) fn steps() -> Vec<Step> {
             let mut level = Level::new(&cloud.points);
             for number in 1..=2 {
                 let (state, _) = run_level(&level, &refine, Order::Together, &mut |_| ());
-                let name = format!(
-                    "{} {:?} {} step {number}",
-                    cloud.name, refine.neighborhood, refine.simplified
-                );
+                let name = format!("{} {} step {number}", cloud.name, describe(&refine));
                 let mut next = level.clone();
-                commit(&mut next, &state.rings, &state.candidates, &state.insertion, &refine);
+                commit(&mut next, &state, &refine);
                 steps.push(Step { name, level, refine: refine.clone(), state });
                 level = next;
             }
@@ -136,7 +131,7 @@ impl Step {
         Params {
             points: self.level.len() as u32,
             slots: self.state.rings.len() as u32,
-            level: 1,
+            level: self.level.step + 1,
             arena_words: ARENA_WORDS as u32,
             ring_entries: self.state.rings.len() as u32,
             conflict_entries: CONFLICT_ENTRIES as u32,
@@ -175,7 +170,9 @@ impl Step {
     }
 
     pub(crate) fn candidate_normals(&self) -> Vec<[f32; 4]> {
-        self.state.candidates.normals.iter().map(|n| n.extend(0.0).to_array()).collect()
+        let c = &self.state.candidates;
+        let near = |i: usize| c.near[c.owners[i] as usize];
+        (0..c.rho.len()).map(|i| c.normals[i].extend(near(i)).to_array()).collect()
     }
 }
 

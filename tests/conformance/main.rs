@@ -14,5 +14,6 @@ mod grid;
 mod harness;
 mod insertion;
 mod neighborhood;
+mod next_ring;
 mod refine;
 mod tolerance;

@@ -1,4 +1,4 @@
-//! The four kernels of the neighbourhood, one after the other on the reference's level and grid.
+//! The five kernels of the neighbourhood, one after the other on the reference's level and grid.
 
 use crate::harness::{
     ARENA_WORDS, Device, Step, compare, compare_equal, device, grid_words, must, steps,
@@ -21,6 +21,10 @@ fn rings(device: &mut Device, step: &Step) -> (Vec<u32>, Vec<[u32; 2]>, u64) {
         .run(step.run("neighborhood_ball", all, n), &[&points, &grid, &arena, &blocks, &counters]);
     let badness = [&points, &blocks, &arena, &counters];
     device.run(step.run("neighborhood_badness", all, ARENA_WORDS / 4), &badness);
+    if step.refine.rules.natural_neighbors {
+        let natural = [&blocks, &arena, &counters];
+        device.run(step.run("neighborhood_natural", all, ARENA_WORDS / 4), &natural);
+    }
     device.run(step.run("neighborhood_ring", all, n), &[&blocks, &arena, &starts, &counters]);
     let mut summed: Vec<u32> = device.read(&starts, n + 1);
     for i in 1..=n {

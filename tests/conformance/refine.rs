@@ -1,12 +1,13 @@
 //! Whole runs of several levels: the engine's cloud against the reference's.
 
-use crate::clouds::{Cloud, variants, whole};
+use crate::clouds::{Cloud, describe, variants, whole};
 use crate::harness::{Device, compare, compare_equal, device, must};
 use crate::tolerance::{EXACT, FLIPPED_DECISIONS, POSITION};
 use std::collections::HashMap;
 use surfine::records::Point;
 use surfine::testing::{Sizing, read};
-use surfine::{Mode, PointSet, RefineParams, Refined, Refiner, Vec3};
+use surfine::{Mode, PointSet, RefineParams, Refined, Refiner, Rules, Vec3};
+use surfine_points::shapes::{Sampling, Shape, sample};
 
 fn flat(vectors: &[Vec3]) -> Vec<f32> {
     vectors.iter().flat_map(|v| v.to_array()).collect()
@@ -55,7 +56,7 @@ fn must_be_close(name: &str, expected: &Refined, found: &Refined) {
 }
 
 fn check(device: &mut Device, cloud: &Cloud, params: &RefineParams) {
-    let name = format!("{} {:?} simplified {}", cloud.name, params.neighborhood, params.simplified);
+    let name = format!("{} {}", cloud.name, describe(params));
     let expected = surfine_reference::refine(&cloud.points, params).expect("the cloud is sound");
     let found = device.refiner.refine(&cloud.points, params).expect("the device can do it");
     if device.is_exact() {
@@ -87,6 +88,21 @@ fn other_parameters_reach_the_kernels() {
         RefineParams { lambda2: 0.8, ..defaults.clone() },
         RefineParams { levels: 0, ..defaults },
     ] {
+        check(&mut device, &cloud, &params);
+    }
+}
+
+#[test]
+fn each_rule_alone_reaches_the_kernels() {
+    let mut device = device();
+    let cloud = Cloud {
+        name: "random sphere".into(),
+        points: sample(Shape::Sphere, Sampling::Random, 250, 9),
+    };
+    for (name, _) in Rules::ALL.named() {
+        let mut rules = Rules::LITERAL;
+        *rules.get_mut(name).expect("it is its name") = true;
+        let params = RefineParams { levels: 2, rules, ..RefineParams::default() };
         check(&mut device, &cloud, &params);
     }
 }

@@ -52,6 +52,8 @@ struct Params {
     theta_c_degrees: f64,
     lambda1: f32,
     lambda2: f32,
+    /// Rules beyond the paper that were followed.
+    rules: Vec<&'static str>,
 }
 
 #[derive(Serialize)]
@@ -134,6 +136,7 @@ impl Params {
             theta_c_degrees: degrees(params.theta_c),
             lambda1: params.lambda1,
             lambda2: params.lambda2,
+            rules: params.rules.named().into_iter().filter(|r| r.1).map(|r| r.0).collect(),
         }
     }
 }

@@ -218,10 +218,8 @@ impl Refiner {
         let classes = step.coloring()?;
         clock.start("insertion");
         let new = step.insertion(&classes)?;
-        if rules.next_ring {
-            clock.start("next_ring");
-            step.next_ring()?;
-        }
+        clock.start("next_ring");
+        step.next_ring()?;
         clock.start("commit");
         step.commit(new, earlier as u32)?;
         let Counters { ball_low, ball_high, isolated, .. } = counters;

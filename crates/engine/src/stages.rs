@@ -434,6 +434,9 @@ impl Step<'_> {
 
     /// `next_ring`: radii that cover the next level's rings.
     pub(crate) fn next_ring(&mut self) -> Result<(), Error> {
+        if !self.rules.next_ring {
+            return Ok(());
+        }
         let n = self.params.points;
         let mut part = n.clamp(1, self.sizing.chunk);
         loop {

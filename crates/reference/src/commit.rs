@@ -1,23 +1,18 @@
 //! The next level: old points with their new radii, then the inserted ones. Twin: `shaders/commit.wgsl`.
 
 use crate::Level;
-use crate::candidates::{Candidates, fan_triangle};
-use crate::insertion::Insertion;
-use crate::neighborhood::Rings;
+use crate::candidates::fan_triangle;
 use crate::pn_triangle;
+use crate::refine::LevelState;
 use surfine_points::RefineParams;
 
 /// Appends the inserted candidates to the level, by (creator, slot), and returns the corners of their triangles.
-pub fn commit(
-    level: &mut Level,
-    rings: &Rings,
-    candidates: &Candidates,
-    insertion: &Insertion,
-    params: &RefineParams,
-) -> Vec<[u32; 3]> {
+pub fn commit(level: &mut Level, state: &LevelState, params: &RefineParams) -> Vec<[u32; 3]> {
+    let LevelState { rings, candidates, insertion, covers, .. } = state;
     let mut parents = Vec::new();
     level.step += 1;
-    level.radii.clone_from(&insertion.radii);
+    let larger = |(a, b): (&f32, &f32)| a.max(*b);
+    level.radii = insertion.radii.iter().zip(&covers.radii).map(larger).collect();
     for slot in (0..rings.len()).filter(|&s| insertion.inserted[s]) {
         let owner = candidates.owners[slot] as usize;
         let triangle = fan_triangle(rings, owner, slot - rings.slots(owner).start);
@@ -35,7 +30,7 @@ pub fn commit(
         parents.push(triangle);
         level.positions.push(position);
         level.normals.push(normal);
-        level.radii.push(insertion.slot_radii[slot]);
+        level.radii.push(insertion.slot_radii[slot].max(covers.slot_radii[slot]));
     }
     parents
 }

@@ -184,12 +184,13 @@ fn is_in_open_gap(ball: &[Neighbor], kept: &[bool], i: usize) -> bool {
     after + before >= OPEN_GAP
 }
 
-/// Whether member `i` is a natural neighbour of the centre on its tangent plane: whether a piece of their bisector is
-/// nearer to both than to every other member.
+/// Whether member `i` is a natural neighbour of the centre on its tangent plane: whether a piece of their bisector, no
+/// farther from its middle than the radius, is nearer to both than to every other member.
 fn is_natural(ball: &[Neighbor], i: usize) -> bool {
     let (x, y) = (ball[i].x, ball[i].y);
     // Places on the bisector are q/2 + t (-y, x).
-    let (mut low, mut high) = (f32::MIN, f32::MAX);
+    let mut high = 1.0 / (x * x + y * y).sqrt();
+    let mut low = -high;
     for (j, other) in ball.iter().enumerate() {
         let along = x * other.x + y * other.y;
         let across = x * other.y - y * other.x;

@@ -12,18 +12,32 @@ use crate::neighborhood::{Neighbor, is_behind};
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// Raises the radii of old points and inserted candidates until they cover the next level's rings.
-pub fn next_ring(stage: Stage<'_>, insertion: &mut Insertion) {
+/// Radii that the next level's rings ask for, 0 where they ask for none.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Covers {
+    /// Of the old points.
+    pub radii: Vec<f32>,
+    /// Of the inserted candidates.
+    pub slot_radii: Vec<f32>,
+}
+
+/// Finds the radii that cover the next level's rings; none if the rule is off.
+pub fn next_ring(stage: Stage<'_>, insertion: &Insertion) -> Covers {
     let points = stage.level.len();
+    let mut result = Covers { radii: vec![0.0; points], slot_radii: vec![0.0; stage.rings.len()] };
+    if !stage.params.rules.next_ring {
+        return result;
+    }
     let covers = |p| covers(stage, insertion, p);
     let covers: Vec<Vec<(u32, f32)>> = (0..points).into_par_iter().map(covers).collect();
     for (id, radius) in covers.into_iter().flatten() {
         let own = match (id as usize).checked_sub(points) {
-            Some(slot) => &mut insertion.slot_radii[slot],
-            None => &mut insertion.radii[id as usize],
+            Some(slot) => &mut result.slot_radii[slot],
+            None => &mut result.radii[id as usize],
         };
         *own = own.max(radius);
     }
+    result
 }
 
 /// Radii that the next ring of a point asks for. Members are old points by index, then slots.

@@ -6,7 +6,7 @@ use crate::commit::commit;
 use crate::conflicts::{Graph, conflicts};
 use crate::insertion::{Insertion, Order, Stage, insertion};
 use crate::neighborhood::{Rings, neighborhood};
-use crate::next_ring::next_ring;
+use crate::next_ring::{Covers, next_ring};
 use crate::{Level, NO_POINT};
 use std::fmt;
 use std::time::Instant;
@@ -82,7 +82,7 @@ pub fn refine_with(
             progress(Progress { level: step, levels: params.levels, stage, points });
         });
         let begin = Instant::now();
-        let parents = commit(&mut level, &state.rings, &state.candidates, &state.insertion, params);
+        let parents = commit(&mut level, &state, params);
         report.stages.push(("commit", begin.elapsed()));
         report.points_out = level.len();
         result.parents.extend(parents);
@@ -110,6 +110,7 @@ pub struct LevelState {
     pub conflicts: Graph,
     pub classes: Classes,
     pub insertion: Insertion,
+    pub covers: Covers,
 }
 
 /// Runs the stages of one refinement step up to the commit.
@@ -156,21 +157,27 @@ pub fn run_level(
         candidate_grid: &candidate_grid,
         params,
     };
-    let mut insertion = insertion(inputs, &classes, order);
+    let insertion = insertion(inputs, &classes, order);
     stage("insertion", begin);
 
-    if params.rules.next_ring {
-        let begin = start("next_ring");
-        next_ring(inputs, &mut insertion);
-        stage("next_ring", begin);
-    }
+    let begin = start("next_ring");
+    let covers = next_ring(inputs, &insertion);
+    stage("next_ring", begin);
 
     report.ball_neighbors = rings.ball_neighbors;
     report.ring_neighbors = rings.len() as u64;
     report.classes = classes.members.len();
     report.isolated = (0..level.len()).filter(|&p| rings.ring(p).is_empty()).count();
-    let state =
-        LevelState { grid, rings, candidates, candidate_grid, conflicts, classes, insertion };
+    let state = LevelState {
+        grid,
+        rings,
+        candidates,
+        candidate_grid,
+        conflicts,
+        classes,
+        insertion,
+        covers,
+    };
     (state, report)
 }
 
