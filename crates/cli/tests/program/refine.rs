@@ -129,7 +129,7 @@ fn json_adds_up() {
         assert!(count(&level["classes"]) > 0);
         assert_eq!(level["isolated"], 0);
         let stages = level["stages_ms"].as_object().unwrap();
-        assert_eq!(stages.len(), 7);
+        assert_eq!(stages.len(), 8);
         ms += stages.values().map(|t| t.as_f64().unwrap()).sum::<f64>();
         points = count(&level["points_out"]);
     }
@@ -146,7 +146,9 @@ fn options_reach_the_refinement() {
     let folder = Folder::with_sample("torus", "300");
     folder.refine(&[]);
     let usual = folder.bytes("out.ply");
-    let options: [&[&str]; 7] = [
+    let options: [&[&str]; 9] = [
+        &["--literal"],
+        &["--without", "next_ring"],
         &["--levels", "1"],
         &["--neighborhood", "fuzzy"],
         &["--simplified"],
@@ -162,6 +164,9 @@ fn options_reach_the_refinement() {
     let report = folder.refine_json(&["--simplified"]);
     assert_eq!(report["params"]["neighborhood"], "fuzzy");
     assert_eq!(report["params"]["simplified"], true);
+    assert_eq!(report["params"]["rules"].as_array().unwrap().len(), 8);
+    let report = folder.refine_json(&["--without", "own_side", "--without", "next_ring"]);
+    assert_eq!(report["params"]["rules"].as_array().unwrap().len(), 6);
 }
 
 #[test]
@@ -389,7 +394,9 @@ fn failure_keeps_an_earlier_output() {
 fn wrong_usage_exits_with_2() {
     let folder = Folder::with_sample("sphere", "20");
     let refine = ["refine", "in.ply", "-o", "out.ply"];
-    let wrong: [&[&str]; 22] = [
+    let wrong: [&[&str]; 24] = [
+        &["--without", "rules"],
+        &["--literal", "--without", "next_ring"],
         &["--levels", "21"],
         &["--levels", "-1"],
         &["--levels", "two"],
