@@ -1,9 +1,9 @@
 //! Values that new points inherit.
 
 use surfine_points::shapes::{Shape, square_grid};
-use surfine_points::{Attribute, PointSet, Refined, Values};
+use surfine_points::{Attribute, Interpolation, PointSet, Refined, Values, Vec3};
 
-use crate::clouds::{jittered_grid, levels, random, refine};
+use crate::clouds::{blue_noise, jittered_grid, levels, random, refine};
 
 /// A cloud with one attribute, refined.
 fn refined_with(mut points: PointSet, name: &str, values: Values) -> Refined {
@@ -125,6 +125,24 @@ fn linear_fields_are_kept_on_a_plane() {
     }
 }
 
+/// Checks that each new point's value is the one that two parents share; returns how many such points there are.
+fn check_votes(refined: &Refined, values: &[i64]) -> usize {
+    let mut votes = 0;
+    for (i, corners) in refined.parents.iter().enumerate() {
+        let [a, b, c] = corners.map(|c| values[c as usize]);
+        if a == b || b == c || c == a {
+            let majority = if a == b || a == c { a } else { b };
+            assert_eq!(
+                values[refined.level_sizes[0] + i],
+                majority,
+                "new point {i} of {corners:?}"
+            );
+            votes += 1;
+        }
+    }
+    votes
+}
+
 /// Checks that each new point's value is that of the parent nearest to it.
 fn check_nearest(refined: &Refined, values: &[i64]) {
     let positions = &refined.points.positions;
@@ -143,10 +161,46 @@ fn check_nearest(refined: &Refined, values: &[i64]) {
 }
 
 #[test]
-fn other_integers_come_from_the_nearest_corner() {
-    let cloud = test_cloud();
-    let labels = Values::I32(hashed(cloud.len()).collect());
-    let refined = refined_with(cloud, "label", labels);
+fn categories_are_voted_for() {
+    for (name, kinds) in [("label", 2), ("classification", 5)] {
+        let cloud = test_cloud();
+        let labels = Values::I32(hashed(cloud.len()).map(|v| v.rem_euclid(kinds)).collect());
+        let refined = refined_with(cloud, name, labels);
+        let Values::I32(values) = &refined.points.attributes[0].values else {
+            panic!("the attribute changed its type");
+        };
+        let values: Vec<i64> = values.iter().map(|&v| i64::from(v)).collect();
+        let votes = check_votes(&refined, &values);
+        // Of two kinds there is always a majority.
+        let new = refined.parents.len();
+        assert!(
+            if kinds == 2 { votes == new } else { votes > 0 && votes < new },
+            "{votes} of {new}"
+        );
+    }
+}
+
+#[test]
+fn categories_without_a_majority_come_from_the_nearest_corner() {
+    // One step: after it new points share the values of old ones.
+    let mut cloud = square_grid(12);
+    let labels = Values::U16((0..cloud.len()).map(|i| i as u16).collect());
+    cloud.attributes = vec![Attribute::new("label", labels)];
+    let refined = refine(&cloud, &levels(1));
+    let Values::U16(values) = &refined.points.attributes[0].values else {
+        panic!("the attribute changed its type");
+    };
+    check_nearest(&refined, &values.iter().map(|&v| i64::from(v)).collect::<Vec<_>>());
+}
+
+#[test]
+fn a_rule_can_be_given_to_a_property() {
+    let mut cloud = test_cloud();
+    let labels = Values::I32(hashed(cloud.len()).map(|v| v.rem_euclid(2)).collect());
+    let nearest =
+        Attribute { interpolation: Interpolation::Nearest, ..Attribute::new("label", labels) };
+    cloud.attributes = vec![nearest];
+    let refined = refine(&cloud, &levels(2));
     let Values::I32(values) = &refined.points.attributes[0].values else {
         panic!("the attribute changed its type");
     };
@@ -154,12 +208,24 @@ fn other_integers_come_from_the_nearest_corner() {
 }
 
 #[test]
-fn small_integers_that_are_no_colours_come_from_the_nearest_corner() {
-    let cloud = square_grid(12);
-    let classes = Values::U8((0..cloud.len()).map(|i| i as u8).collect());
-    let refined = refined_with(cloud, "classification", classes);
-    let Values::U8(values) = &refined.points.attributes[0].values else {
-        panic!("the attribute changed its type");
+fn directions_keep_unit_length() {
+    // The points' own normals as a second set: new ones must lie near the surface's.
+    let mut cloud = blue_noise(Shape::Sphere, 400, 1);
+    for (axis, name) in ["tx", "ty", "tz"].into_iter().enumerate() {
+        let values = Values::F32(cloud.normals.iter().map(|n| n[axis]).collect());
+        let attribute = Attribute::new(name, values);
+        cloud.attributes.push(Attribute { interpolation: Interpolation::Unit, ..attribute });
+    }
+    let refined = refine(&cloud, &levels(2)).points;
+    let column = |i: usize| match &refined.attributes[i].values {
+        Values::F32(values) => values,
+        _ => panic!("the attribute changed its type"),
     };
-    check_nearest(&refined, &values.iter().map(|&v| i64::from(v)).collect::<Vec<_>>());
+    let (x, y, z) = (column(0), column(1), column(2));
+    for (i, position) in refined.positions.iter().enumerate() {
+        let direction = Vec3::new(x[i], y[i], z[i]);
+        assert!((direction.length() - 1.0).abs() < 1e-6, "point {i}: {direction}");
+        // The mean of three corners is off by some share of the spacing squared, .03.
+        assert!(direction.dot(position.normalize()) > 0.999, "point {i}: {direction}");
+    }
 }

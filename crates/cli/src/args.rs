@@ -11,6 +11,7 @@ use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use surfine::{Neighborhood, RefineParams, Rules};
+use surfine_points::Interpolation;
 use surfine_points::shapes::Shape;
 
 const EXAMPLES: &str = "\
@@ -28,6 +29,7 @@ Examples:
   surfine refine scan.ply -o fine.ply
   surfine refine scan.ply -o fine.ply --levels 3 --backend gpu
   surfine refine scan.ply -o fine.ply --ascii --provenance --quiet
+  surfine refine scan.ply -o fine.ply --attribute intensity=nearest --attribute tx,ty,tz=unit
   surfine refine scan.ply -o fine.ply --json | jq .points_per_second
 
 The points of IN come first in FILE, in their order and unchanged but for their radii; the new points
@@ -123,6 +125,10 @@ pub(crate) struct RefineArgs {
     #[arg(long, value_name = "X", default_value = "0.5", value_parser = lambda2)]
     #[arg(allow_negative_numbers = true)]
     lambda2: f32,
+    /// How new points get a property: linear, nearest (corner), vote (of the corners) or unit, a direction, for three
+    /// properties at once; may be given several times
+    #[arg(long, value_name = "PROPERTY=RULE", value_parser = attribute_rule)]
+    pub(crate) attribute: Vec<(Vec<String>, Interpolation)>,
     /// Write decimal text instead of little-endian binary
     #[arg(long)]
     pub(crate) ascii: bool,
@@ -236,6 +242,19 @@ impl RefineArgs {
 fn shape() -> impl TypedValueParser<Value = Shape> {
     let names = PossibleValuesParser::new(Shape::ALL.map(Shape::name));
     names.try_map(|name| name.parse::<Shape>())
+}
+
+/// Names of properties and their rule: `label=vote`, `tx,ty,tz=unit`.
+fn attribute_rule(text: &str) -> Result<(Vec<String>, Interpolation), String> {
+    let wrong = "it must be like label=vote or tx,ty,tz=unit, with linear, nearest, vote or unit";
+    let (names, rule) = text.split_once('=').ok_or(wrong)?;
+    let names: Vec<String> = names.split(',').map(str::to_owned).collect();
+    let named = Interpolation::NAMED.into_iter().find(|(name, _)| *name == rule);
+    let (_, rule) = named.ok_or(wrong)?;
+    if rule == Interpolation::Unit && names.len() != 3 {
+        return Err("a direction has three properties: tx,ty,tz=unit".into());
+    }
+    if names.iter().any(String::is_empty) { Err(wrong.into()) } else { Ok((names, rule)) }
 }
 
 fn rule() -> PossibleValuesParser {

@@ -7,7 +7,7 @@ use crate::watch::Watch;
 use crate::{Failure, files, print};
 use std::time::{Duration, Instant};
 use surfine_points::ply::{self, PlyError, Provenance, Source};
-use surfine_points::{PointSet, Values};
+use surfine_points::{Interpolation, PointSet, Values};
 
 pub(crate) fn run(args: &RefineArgs) -> Result<(), Failure> {
     check_paths(args)?;
@@ -34,7 +34,8 @@ fn check_paths(args: &RefineArgs) -> Result<(), Failure> {
 fn refine(args: &RefineArgs, watch: &Watch) -> Result<Report, Failure> {
     watch.step(format!("reading {}", args.input.display()));
     let (read, input) = timed(|| ply::read(&args.input));
-    let (points, source) = input?;
+    let (mut points, source) = input?;
+    set_attribute_rules(args, &mut points)?;
     check_attributes(args, &points)?;
     watch.step("preparing".into());
     let computed = backend::compute(args, &points, watch)?;
@@ -43,6 +44,35 @@ fn refine(args: &RefineArgs, watch: &Watch) -> Result<Report, Failure> {
     written?;
     let times = Times { read, setup: computed.setup, refine: computed.refine, write };
     Ok(Report::new(args, &points, &source, &computed, times))
+}
+
+/// Gives the properties the rules that the user asks for.
+fn set_attribute_rules(args: &RefineArgs, points: &mut PointSet) -> Result<(), Failure> {
+    for (names, rule) in &args.attribute {
+        let mut found = Vec::new();
+        for name in names {
+            let place = points.attributes.iter().position(|a| a.name == *name);
+            let missing = || {
+                let input = args.input.display();
+                Failure(format!(
+                    "{input}: there is no property {name} to be interpolated: check --attribute"
+                ))
+            };
+            found.push(place.ok_or_else(missing)?);
+        }
+        if *rule == Interpolation::Unit {
+            let fits = found.iter().all(|&i| points.attributes[i].values.is_float());
+            // Their columns must follow each other, so that they are taken for one direction.
+            if !fits || found[1] != found[0] + 1 || found[2] != found[1] + 1 {
+                let (input, names) = (args.input.display(), names.join(", "));
+                return Err(Failure(format!(
+                    "{input}: {names} are no direction: they must be floats and follow each other in the file"
+                )));
+            }
+        }
+        found.into_iter().for_each(|i| points.attributes[i].interpolation = *rule);
+    }
+    Ok(())
 }
 
 fn timed<T>(work: impl FnOnce() -> T) -> (Duration, T) {

@@ -39,6 +39,21 @@ pub enum Interpolation {
     Linear,
     /// The value of the nearest corner, the first of equally near ones.
     Nearest,
+    /// The value that two corners share, else that of the nearest: for categories.
+    Vote,
+    /// Mean of the three corners, and the three attributes of this rule that follow each other brought to unit length
+    /// together: for directions. Zero where the mean is.
+    Unit,
+}
+
+impl Interpolation {
+    /// Every rule with its name on the command line.
+    pub const NAMED: [(&'static str, Self); 4] = [
+        ("linear", Self::Linear),
+        ("nearest", Self::Nearest),
+        ("vote", Self::Vote),
+        ("unit", Self::Unit),
+    ];
 }
 
 /// A column of attribute values in the type that the file gave.
@@ -91,6 +106,24 @@ impl Values {
         each_type!(self, column => column.push(column[index]));
     }
 
+    /// Whether two entries are equal; as bits, so that it holds for NaN too.
+    fn are_equal(&self, a: usize, b: usize) -> bool {
+        match self {
+            Self::F32(column) => column[a].to_bits() == column[b].to_bits(),
+            Self::F64(column) => column[a].to_bits() == column[b].to_bits(),
+            _ => each_type!(self, column => column[a] == column[b]),
+        }
+    }
+
+    /// The first of the corners whose value another one shares.
+    fn majority(&self, [a, b, c]: [usize; 3]) -> Option<usize> {
+        if self.are_equal(a, b) || self.are_equal(a, c) {
+            Some(a)
+        } else {
+            self.are_equal(b, c).then_some(b)
+        }
+    }
+
     /// Appends the mean of three entries.
     fn push_mean(&mut self, corners: [usize; 3]) {
         /// Round half up in integers, so that no float rounding enters.
@@ -122,12 +155,12 @@ impl Values {
 
 impl Attribute {
     /// An attribute with the rule that its name and type call for: colours and floats are linear, other integers are
-    /// taken from the nearest corner.
+    /// categories and voted for.
     pub fn new(name: impl Into<String>, values: Values) -> Self {
         let name = name.into();
         let linear =
             values.is_float() || matches!(name.as_str(), "red" | "green" | "blue" | "alpha");
-        let interpolation = if linear { Interpolation::Linear } else { Interpolation::Nearest };
+        let interpolation = if linear { Interpolation::Linear } else { Interpolation::Vote };
         Self { name, values, interpolation }
     }
 }
@@ -267,20 +300,52 @@ impl PointSet {
     /// `parents` holds the corners of the new points in order, each corner an earlier point; positions must already
     /// hold the new points.
     pub fn extend_attributes(&mut self, parents: &[[u32; 3]]) {
+        let first = self.positions.len() - parents.len();
         for attribute in &mut self.attributes {
-            let first = self.positions.len() - parents.len();
-            for (i, corners) in parents.iter().enumerate() {
+            let Attribute { values, interpolation, .. } = attribute;
+            for (x, corners) in self.positions[first..].iter().zip(parents) {
                 let corners = corners.map(|c| c as usize);
-                match attribute.interpolation {
-                    Interpolation::Linear => attribute.values.push_mean(corners),
-                    Interpolation::Nearest => {
-                        let x = self.positions[first + i];
-                        let distance = |c: &usize| (self.positions[*c] - x).length_squared();
-                        let nearest =
-                            corners.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
-                        attribute.values.push_copy(nearest.expect("there are three corners"));
+                let nearest = || {
+                    let distance = |c: &usize| (self.positions[*c] - *x).length_squared();
+                    let near = |a: &usize, b: &usize| distance(a).total_cmp(&distance(b));
+                    corners.into_iter().min_by(near).expect("there are three corners")
+                };
+                match interpolation {
+                    Interpolation::Linear | Interpolation::Unit => values.push_mean(corners),
+                    Interpolation::Nearest => values.push_copy(nearest()),
+                    Interpolation::Vote => {
+                        let chosen = values.majority(corners).unwrap_or_else(nearest);
+                        values.push_copy(chosen);
                     }
                 }
+            }
+        }
+        let mut vectors: Vec<&mut Values> = self
+            .attributes
+            .iter_mut()
+            .filter(|a| a.interpolation == Interpolation::Unit)
+            .map(|a| &mut a.values)
+            .collect();
+        vectors.as_chunks_mut::<3>().0.iter_mut().for_each(|vector| normalize(vector, first));
+    }
+}
+
+/// Brings the vectors of three columns to unit length, from an entry on; zero vectors stay.
+fn normalize(columns: &mut [&mut Values; 3], first: usize) {
+    for i in first..columns[0].len() {
+        let component = |values: &Values| match values {
+            Values::F32(column) => f64::from(column[i]),
+            Values::F64(column) => column[i],
+            // Directions have fractions; integers stay what they are.
+            _ => 0.0,
+        };
+        let vector = DVec3::from_array([0, 1, 2].map(|axis| component(columns[axis])));
+        let unit = vector.normalize_or_zero().to_array();
+        for (values, unit) in columns.iter_mut().zip(unit) {
+            match values {
+                Values::F32(column) => column[i] = unit as f32,
+                Values::F64(column) => column[i] = unit,
+                _ => {}
             }
         }
     }

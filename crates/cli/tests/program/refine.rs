@@ -170,6 +170,39 @@ fn options_reach_the_refinement() {
 }
 
 #[test]
+fn attribute_rules_come_from_the_command_line() {
+    let rows = "0 0 0 0 0 1 2 5 1 0 0\n1 0 0 0 0 1 2 7 0 1 0\n0 1 0 0 0 1 2 7 0 0 1\n";
+    let more = "property uchar label\nproperty float tx\nproperty float ty\nproperty float tz\n";
+    let folder =
+        Folder::with_input(ascii(3, rows).replace("end_header", &format!("{more}end_header")));
+    let refined = |rules: &[&str]| {
+        let rules: Vec<&str> = rules.iter().flat_map(|rule| ["--attribute", rule]).collect();
+        folder.refine(&[&["--levels", "1"], &rules[..]].concat());
+        let points = folder.points("out.ply");
+        let Some(Values::U8(labels)) = points.attribute("label").map(|a| &a.values) else {
+            panic!("no label")
+        };
+        let Some(Values::F32(tx)) = points.attribute("tx").map(|a| &a.values) else {
+            panic!("no tx")
+        };
+        (labels[3], tx[3])
+    };
+    assert_eq!(refined(&[]), (7, 1.0 / 3.0));
+    assert_eq!(refined(&["label=linear"]).0, 6);
+    let unit = refined(&["tx,ty,tz=unit"]).1;
+    assert!((unit - 1.0 / 3f32.sqrt()).abs() < 1e-6, "{unit}");
+    let fail = |rule: &str, part: &str| {
+        folder.fail(&["refine", "in.ply", "-o", "new.ply", "--attribute", rule], part);
+    };
+    fail("tint=vote", "no property tint");
+    fail("label,tx,ty=unit", "no direction");
+    for wrong in ["label", "label=", "label=mean", "tx,ty=unit", ",=vote"] {
+        let output = folder.run(&["refine", "in.ply", "-o", "new.ply", "--attribute", wrong]);
+        assert_eq!(output.status.code(), Some(2), "{wrong}: {}", text(&output.stderr));
+    }
+}
+
+#[test]
 fn decimal_output_holds_the_same_points() {
     let folder = Folder::with_sample("sphere", "100");
     folder.refine(&[]);
