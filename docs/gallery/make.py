@@ -3,7 +3,7 @@
 Usage: python3 docs/gallery/make.py DATA
 
 DATA is the folder of test data (mesh/, points/, analytic/). Needs cargo, and the package pymeshlab for the mesh that
-Figure 8 is held against. Takes about five minutes.
+Figure 8 is held against. Takes about a minute.
 """
 
 import os
@@ -49,7 +49,7 @@ surface. Both interpolate the 600 points.""",
             "python3 butterfly.py data/points/igea-600-uniform.ply butterfly.ply",
             "surfine refine data/points/igea-600-uniform.ply -o igea.ply --levels 5 -q",
             "surfine render butterfly.ply igea.ply data/mesh/igea.ply -o figure-8.png --size 480x600"
-            " --caption 'butterfly: 152 322 vertices' --caption 'Surfine: 140 850 points' --caption 'true surface'",
+            " --caption 'butterfly subdivision' --caption 'Surfine' --caption 'true surface'",
             "surfine evaluate butterfly.ply --truth data/mesh/igea.ply",
             "surfine evaluate igea.ply --truth data/mesh/igea.ply --input data/points/igea-600-uniform.ply",
             "surfine evaluate igea.ply --truth data/mesh/igea.ply -q --heatmap figure-8-error.png --size 480x600 > /dev/null",
@@ -62,8 +62,10 @@ and the radii of the 66 points around it reach across. Two steps, drawn as raw p
 its points stay coarser than the rest. A step of its own for holes is to come.""",
         [
             "surfine refine data/points/igea-5000-hole.ply -o hole.ply --levels 2 -q",
-            "surfine render data/points/igea-5000-hole-open.ply hole.ply data/mesh/igea.ply -o figure-9.png --size 480x560"
-            " --eye=-1.3,0.4,1.2 --target=-0.05,0,0 --points --point-size 0.8 --caption 'the hole' --caption 'after 2 steps' --caption 'true surface'",
+            "surfine render data/points/igea-5000-hole-open.ply data/mesh/igea.ply -o figure-9-hole.png --size 480x560"
+            " --eye=-1.3,0.4,1.2 --target=-0.05,0,0 --caption 'the hole' --caption 'true surface'",
+            "surfine render hole.ply -o figure-9.png --size 960x800 --points --point-size 1"
+            " --eye=-1.3,0.4,1.2 --target=-0.05,0,0 --caption 'after 2 steps'",
             "surfine evaluate hole.ply --truth data/mesh/igea.ply --input data/points/igea-5000-hole.ply",
         ],
     ),
