@@ -2,8 +2,8 @@
 //
 // Expects `points`, `candidate_positions`, `candidate_normals` and `arena`.
 
-/// Whether the simplifications of section 7 are made.
-override simplified: bool = false;
+/// Whether angles between new neighbours are straight instead of curved.
+override plain_angle: bool = false;
 
 /// A gap or an angle must be wider by this factor to be preferred to an earlier one: regular grids tie.
 const HYSTERESIS: f32 = 1.00001;
@@ -94,7 +94,7 @@ fn directed_gap(i: u32) -> f32 {
     return angle_at(i + 1u) - angle_at(i);
 }
 
-/// Angle from member i to the next one: curved (eq. 5), or plain if simplified; directed from π on.
+/// Angle from member i to the next one: curved (eq. 5), or plain; directed from π on.
 fn measured_gap(i: u32) -> f32 {
     let directed = directed_gap(i);
     if directed >= PI {
@@ -104,7 +104,7 @@ fn measured_gap(i: u32) -> f32 {
     let b = slot_at(next_member(i));
     let from_a = offset_of(a) * ring.inverse_radius;
     let from_b = offset_of(b) * ring.inverse_radius;
-    if simplified {
+    if plain_angle {
         return angle_between(from_a, from_b);
     }
     return curved_angle(Corner(from_a, candidate_normals[a].xyz), Corner(from_b, candidate_normals[b].xyz));

@@ -82,6 +82,7 @@ fn other_parameters_reach_the_kernels() {
     let (cloud, _) = whole().remove(1);
     let defaults = RefineParams { levels: 2, ..RefineParams::default() };
     for params in [
+        RefineParams { plain_angle: true, ..defaults.clone() },
         RefineParams { theta_f: 0.3, ..defaults.clone() },
         RefineParams { theta_c: 1.2, ..defaults.clone() },
         RefineParams { lambda1: 0.4, ..defaults.clone() },

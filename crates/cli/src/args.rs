@@ -103,6 +103,9 @@ pub(crate) struct RefineArgs {
     /// Take the paper's four simplifications: faster, for dense smooth clouds; implies fuzzy
     #[arg(long)]
     simplified: bool,
+    /// Measure the angle between new neighbors straight instead of along the curved surface: a little faster
+    #[arg(long)]
+    plain_angle: bool,
     /// Keep to the text of the paper: without the rules for irregular samples and close sheets
     #[arg(long)]
     literal: bool,
@@ -234,8 +237,19 @@ impl RefineArgs {
         for name in &self.without {
             *rules.get_mut(name).expect("the name was checked") = false;
         }
-        let &Self { levels, simplified, theta_f, theta_c, lambda1, lambda2, .. } = self;
-        RefineParams { levels, neighborhood, simplified, theta_f, theta_c, lambda1, lambda2, rules }
+        let &Self { levels, simplified, plain_angle, .. } = self;
+        let &Self { theta_f, theta_c, lambda1, lambda2, .. } = self;
+        RefineParams {
+            levels,
+            neighborhood,
+            simplified,
+            plain_angle,
+            theta_f,
+            theta_c,
+            lambda1,
+            lambda2,
+            rules,
+        }
     }
 }
 

@@ -48,6 +48,8 @@ struct Params {
     /// The one that was used: `accurate` or `fuzzy`.
     neighborhood: &'static str,
     simplified: bool,
+    /// Whether angles between new neighbours were straight.
+    plain_angle: bool,
     theta_f_degrees: f64,
     theta_c_degrees: f64,
     lambda1: f32,
@@ -132,6 +134,7 @@ impl Params {
                 Neighborhood::Fuzzy => "fuzzy",
             },
             simplified: params.simplified,
+            plain_angle: params.effective_plain_angle(),
             theta_f_degrees: degrees(params.theta_f),
             theta_c_degrees: degrees(params.theta_c),
             lambda1: params.lambda1,

@@ -40,7 +40,9 @@ pub type Constants = Vec<(&'static str, f64)>;
 /// The values of the kernels' `override`s that parameters ask for.
 pub fn constants(params: &RefineParams) -> Constants {
     let accurate = params.effective_neighborhood() == Neighborhood::Accurate;
-    let modes = [("accurate", accurate), ("simplified", params.simplified)];
+    let plain_angle = params.effective_plain_angle();
+    let modes =
+        [("accurate", accurate), ("simplified", params.simplified), ("plain_angle", plain_angle)];
     let all = modes.into_iter().chain(params.rules.named());
     all.map(|(name, on)| (name, f64::from(on))).collect()
 }

@@ -21,6 +21,8 @@ pub struct RefineParams {
     pub neighborhood: Neighborhood,
     /// The four simplifications of section 7: Euclidean distance, plain angle, `N^f`, displacement after insertion.
     pub simplified: bool,
+    /// The angle between new neighbours is straight instead of curved (eq. 5); `simplified` asks for it too.
+    pub plain_angle: bool,
     /// Tolerance angle of the fuzzy planes in radians (section 4.1), in (0, π/2]. Default π/6.
     pub theta_f: f32,
     /// Largest angle of a complete new neighbourhood in radians (section 5), in (0, π). Default 89°: regular grids tie
@@ -124,6 +126,7 @@ impl Default for RefineParams {
             levels: 1,
             neighborhood: Neighborhood::Accurate,
             simplified: false,
+            plain_angle: false,
             theta_f: PI / 6.0,
             theta_c: 89.0 * PI / 180.0,
             lambda1: 0.577_350_26,
@@ -170,6 +173,11 @@ impl RefineParams {
     /// Sine of `theta_f`, through f64 so that every system library rounds it alike.
     pub fn sin_theta_f(&self) -> f32 {
         f64::from(self.theta_f).sin() as f32
+    }
+
+    /// Whether the angle between new neighbours is straight: `simplified` asks for it.
+    pub fn effective_plain_angle(&self) -> bool {
+        self.simplified || self.plain_angle
     }
 
     /// The neighbourhood that is used: `simplified` asks for the fuzzy one.

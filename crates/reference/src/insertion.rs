@@ -252,14 +252,14 @@ impl<'a> Fan<'a> {
         if i + 1 == self.ring.len() { 0 } else { i + 1 }
     }
 
-    /// Angle from member `i` to the next one: curved (eq. 5), or plain if `simplified`; directed from π on.
+    /// Angle from member `i` to the next one: curved (eq. 5), or plain; directed from π on.
     fn gap(&self, i: usize) -> f32 {
         let directed = self.directed_gap(i);
         if directed >= PI {
             return directed;
         }
         let (a, b) = (self.ring[i].slot, self.ring[self.next(i)].slot);
-        if self.stage.params.simplified {
+        if self.stage.params.effective_plain_angle() {
             return angle_between(
                 self.offset(a) * self.inverse_radius,
                 self.offset(b) * self.inverse_radius,

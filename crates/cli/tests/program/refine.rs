@@ -146,7 +146,8 @@ fn options_reach_the_refinement() {
     let folder = Folder::with_sample("torus", "300");
     folder.refine(&[]);
     let usual = folder.bytes("out.ply");
-    let options: [&[&str]; 9] = [
+    let options: [&[&str]; 10] = [
+        &["--plain-angle"],
         &["--literal"],
         &["--without", "next_ring"],
         &["--levels", "1"],
