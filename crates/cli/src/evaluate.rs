@@ -1,7 +1,7 @@
 //! `surfine evaluate`.
 
 use crate::args::EvaluateArgs;
-use crate::paint::{heat, scale};
+use crate::paint::heat;
 use crate::painter::Painter;
 use crate::scene::axes;
 use crate::watch::Watch;
@@ -137,11 +137,9 @@ impl<'a> Heatmap<'a> {
         watch: &Watch,
     ) -> Result<(), Failure> {
         watch.step("drawing the heatmap".into());
-        let errors = errors(output, truth)?;
-        let largest = errors.iter().copied().fold(0.0, f64::max);
-        let high = args.max.map_or(largest, f64::from);
+        let (colors, scale) = heat(&[errors(output, truth)?], args.max);
         let points = cloud::to_points(&args.output, output, watch);
-        let splats = Splats::new(&points, Space::around([&points]), Some(&heat(&errors, high)));
+        let splats = Splats::new(&points, Space::around([&points]), Some(&colors[0]));
         let [direction, up] = axes(args.view, args.z_up);
         let camera = Camera::look(splats.outline(1.0), direction, up, args.size.aspect());
         let style = Style { coloring: Coloring::Data, ..Style::default() };
@@ -149,7 +147,7 @@ impl<'a> Heatmap<'a> {
         let picture = self.painter.draw(&ready, &camera, &style, args.size, watch)?;
         let name = args.output.file_name().unwrap_or_default().to_string_lossy();
         let text = format!("{name}: distance to the true surface");
-        let caption = Caption { text, scale: Some(scale("distance", 0.0, high)) };
+        let caption = Caption { text, scale: Some(scale) };
         Ok(picture.with_caption(&caption).write_png(self.path)?)
     }
 }

@@ -57,10 +57,7 @@ impl Paint {
             surfine_evaluate::errors(&cloud.model, &truth).map_err(named)
         });
         let errors: Vec<Vec<f64>> = errors.collect::<Result<_, _>>()?;
-        let largest = errors.iter().flatten().copied().fold(0.0, f64::max);
-        let high = args.max.map_or(largest, f64::from);
-        let (colors, scale) =
-            (errors.iter().map(|e| heat(e, high)).collect(), scale("distance", 0.0, high));
+        let (colors, scale) = heat(&errors, args.max);
         Ok(Self { coloring: Coloring::Data, colors, scale: Some(scale) })
     }
 
@@ -79,13 +76,17 @@ impl Paint {
     }
 }
 
-/// The colour of each distance from 0 to `high`, farther ones like that.
-pub(crate) fn heat(errors: &[f64], high: f64) -> Vec<[u8; 3]> {
-    errors.iter().map(|error| ramp(if high > 0.0 { error / high } else { 0.0 })).collect()
+/// The colour of each distance in each list from 0 to `max`, or else to the largest; farther ones like that. And the scale.
+pub(crate) fn heat(errors: &[Vec<f64>], max: Option<f32>) -> (Vec<Vec<[u8; 3]>>, Scale) {
+    let largest = errors.iter().flatten().copied().fold(0.0, f64::max);
+    let high = max.map_or(largest, f64::from);
+    let color = |error: &f64| ramp(if high > 0.0 { error / high } else { 0.0 });
+    let colors = errors.iter().map(|list| list.iter().map(color).collect());
+    (colors.collect(), scale("distance", 0.0, high))
 }
 
 /// A scale of lengths.
-pub(crate) fn scale(what: &str, low: f64, high: f64) -> Scale {
+fn scale(what: &str, low: f64, high: f64) -> Scale {
     let number = |value| if value == 0.0 { "0".into() } else { format!("{value:.3e}") };
     Scale { what: what.into(), ends: [number(low), number(high)] }
 }

@@ -113,13 +113,5 @@ pub(crate) fn read_parts(gpu: &Gpu, parts: &[(&wgpu::Buffer, u64, u64)]) -> Resu
         at += bytes;
     }
     gpu.queue.submit([encoder.finish()]);
-    let (sender, receiver) = std::sync::mpsc::channel();
-    staging.map_async(wgpu::MapMode::Read, .., move |result| {
-        // The receiver is gone only if the wait below failed, which is reported there.
-        let _ = sender.send(result);
-    });
-    gpu.wait()?;
-    receiver.recv().map_err(|e| gpu.error(&e))?.map_err(|e| gpu.error(&e))?;
-    let view = staging.get_mapped_range(..).map_err(|e| gpu.error(&e))?;
-    Ok(view.to_vec())
+    Ok(gpu.map(&staging)?.to_vec())
 }

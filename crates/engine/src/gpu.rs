@@ -1,6 +1,6 @@
 //! Adapters and devices.
 
-use crate::{Error, buffers};
+use crate::Error;
 use std::time::Duration;
 
 /// How long the host waits for the device before it gives up: a hang must not be for ever.
@@ -140,12 +140,19 @@ impl Gpu {
         }
     }
 
-    /// Reads the first `bytes` bytes, a multiple of 4, of a buffer that is a copy source.
+    /// Waits for what was submitted and gives the host a view of a buffer of usage `MAP_READ`.
     ///
     /// # Errors
-    /// The device was lost.
-    pub fn read(&self, buffer: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8>, Error> {
-        buffers::read(self, buffer, bytes)
+    /// The device was lost or took too long.
+    pub fn map(&self, buffer: &wgpu::Buffer) -> Result<wgpu::BufferView, Error> {
+        let (sender, receiver) = std::sync::mpsc::channel();
+        buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+            // The receiver is gone only if the wait below failed, which is reported there.
+            let _ = sender.send(result);
+        });
+        self.wait()?;
+        receiver.recv().map_err(|e| self.error(&e))?.map_err(|e| self.error(&e))?;
+        buffer.get_mapped_range(..).map_err(|e| self.error(&e))
     }
 
     /// Waits for everything that was submitted.

@@ -1,12 +1,9 @@
 //! What a file shows: a cloud or a mesh, as it came.
 
-use crate::shapes::natural_radii;
+use crate::shapes::{RADIUS_FACTOR, natural_radii};
 use crate::{Attribute, PointSet, Values};
 use glam::{DVec3, Vec3};
 use std::collections::HashMap;
-
-/// Made-up radii of a mesh exceed the longest edge at the vertex by this factor.
-const RADIUS_FACTOR: f64 = 1.25;
 
 /// A cloud or a triangle mesh with whatever a file says of it, in the file's own coordinates.
 ///

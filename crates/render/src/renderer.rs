@@ -6,7 +6,6 @@ use crate::style::{SOFT, SOLID, packed_ramp};
 use crate::view::Uniform;
 use crate::{Camera, Error, Picture, Size, Splats, Style};
 use glam::Vec3;
-use std::time::Duration;
 use surfine::records::Point;
 use surfine::{Gpu, GpuRefined, wgpu};
 
@@ -29,9 +28,6 @@ pub const SHADERS: [(&str, &str); 2] = [
         ),
     ),
 ];
-
-/// How long a picture may take: a hang must not be for ever.
-const TIMEOUT: Duration = Duration::from_secs(600);
 
 /// Half floats: sums of more than some hundred discs lose digits.
 const SUMS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -331,28 +327,10 @@ impl Renderer {
             texture.size(),
         );
         self.gpu.queue.submit([encoder.finish()]);
-        let bytes = self.map(&staging)?;
+        let bytes = self.gpu.map(&staging)?;
         let rows = bytes.chunks_exact(stride as usize);
         let pixels = rows.flat_map(|bytes| bytes[..row as usize].as_chunks().0).copied().collect();
         Ok(Picture { size, pixels })
-    }
-
-    /// Waits for a buffer that the host may read.
-    fn map(&self, buffer: &wgpu::Buffer) -> Result<wgpu::BufferView, surfine::Error> {
-        let failed = |message: String| surfine::Error::Device {
-            adapter: self.gpu.name.clone(),
-            message: message.split_whitespace().collect::<Vec<_>>().join(" "),
-        };
-        let (sender, receiver) = std::sync::mpsc::channel();
-        buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-            // The receiver is gone only if the wait below failed, which is reported there.
-            let _ = sender.send(result);
-        });
-        let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(TIMEOUT) };
-        self.gpu.device.poll(wait).map_err(|e| failed(e.to_string()))?;
-        let mapped = receiver.recv().map_err(|e| failed(e.to_string()))?;
-        mapped.map_err(|e| failed(e.to_string()))?;
-        buffer.get_mapped_range(..).map_err(|e| failed(e.to_string()))
     }
 }
 

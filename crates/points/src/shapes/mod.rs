@@ -17,10 +17,10 @@ use std::str::FromStr;
 use fastrand::Rng;
 use glam::{DVec3, Vec3};
 
-use crate::PointSet;
+use crate::{Model, PointSet};
 
 /// Radii exceed the distance to the farthest natural neighbour by this factor.
-const RADIUS_FACTOR: f64 = 1.25;
+pub(crate) const RADIUS_FACTOR: f64 = 1.25;
 
 /// Blue noise is chosen from this many times as many random points; Yuksel (2015) advises 5, more are more even.
 const CANDIDATES: usize = 8;
@@ -145,15 +145,8 @@ pub fn icosphere(subdivisions: u32) -> PointSet {
     for _ in 0..subdivisions {
         faces = split_faces(&mut vertices, &faces);
     }
-    let mut longest = vec![0.0f64; vertices.len()];
-    for [a, b, c] in faces {
-        for (from, to) in [(a, b), (b, c), (c, a)] {
-            let length = (vertices[from as usize] - vertices[to as usize]).length();
-            // The edge's other face has it the other way round.
-            longest[from as usize] = longest[from as usize].max(length);
-        }
-    }
     let positions: Vec<Vec3> = vertices.iter().map(|v| v.as_vec3()).collect();
+    let longest = Model::mesh(vertices, faces).longest_edges();
     let radii = longest.iter().map(|length| (RADIUS_FACTOR * length) as f32).collect();
     PointSet::new(positions.clone(), positions, radii)
 }
