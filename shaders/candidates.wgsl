@@ -1,5 +1,5 @@
 // candidates: the possible new points L_p of each fan (section 5, eq. 12). Twin: crates/reference/src/candidates.rs
-// One invocation per point.
+// One invocation per point, or per new point on a crease or boundary where there are more.
 
 @group(0) @binding(2) var<storage, read> points: array<Point>;
 @group(0) @binding(3) var<storage, read> ring_starts: array<u32>;
@@ -8,9 +8,10 @@
 @group(0) @binding(5) var<storage, read_write> candidate_positions: array<vec4<f32>>;
 /// Normal, and in every slot of a point the distance within which new points are its new neighbours.
 @group(0) @binding(6) var<storage, read_write> candidate_normals: array<vec4<f32>>;
-/// The point whose fan holds the slot.
+/// The point whose fan holds the slot; NONE for new points on creases and boundaries.
 @group(0) @binding(7) var<storage, read_write> owners: array<u32>;
 @group(0) @binding(8) var<storage, read_write> states: array<u32>;
+@group(0) @binding(9) var<storage, read> curves: array<u32>;
 
 /// Whether the simplifications of section 7 are made.
 override simplified: bool = false;
@@ -23,6 +24,9 @@ const NATURAL: f32 = 1.25;
 @compute @workgroup_size(64)
 fn candidates(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let p = linear_index(id, groups);
+    if params.fan_slots + p < params.slots {
+        add_curve_point(params.fan_slots + p);
+    }
     if p >= params.points {
         return;
     }
@@ -36,6 +40,15 @@ fn candidates(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgro
             candidate_normals[slot] = vec4(0.0, 0.0, 0.0, near);
         }
     }
+}
+
+/// Takes over a new point on a crease or boundary, which is inserted in any case.
+fn add_curve_point(slot: u32) {
+    let record = record_of_slot(slot);
+    candidate_positions[slot] = vec4(record_position(record), record_rho(record));
+    candidate_normals[slot] = vec4(record_normal(record), 0.0);
+    owners[slot] = NONE;
+    states[slot] = ON_CURVE;
 }
 
 /// Writes the candidate of a slot; false if there is none.

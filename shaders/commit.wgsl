@@ -13,6 +13,7 @@
 @group(0) @binding(9) var<storage, read> next_radii: array<u32>;
 /// Three corners of each new point's triangle.
 @group(0) @binding(10) var<storage, read_write> parents: array<u32>;
+@group(0) @binding(11) var<storage, read> curves: array<u32>;
 
 /// Whether the simplifications of section 7 are made.
 override simplified: bool = false;
@@ -34,6 +35,10 @@ fn next_radius(index: u32) -> f32 {
 }
 
 fn append_point(slot: u32, rank: u32) {
+    if owners[slot] == NONE {
+        append_curve_point(slot, rank);
+        return;
+    }
     let corners = fan_triangle(owners[slot], slot);
     var position = candidate_positions[slot].xyz;
     var normal = candidate_normals[slot].xyz;
@@ -49,6 +54,20 @@ fn append_point(slot: u32, rank: u32) {
     }
     let radius = next_radius(params.points + slot);
     points[params.points + rank] = Point(position, radius, normal, params.level);
+    set_parents(rank, corners);
+}
+
+/// A new point on a crease or boundary has the ends of its segment as corners, the nearer one twice.
+fn append_curve_point(slot: u32, rank: u32) {
+    let record = record_of_slot(slot);
+    let radius = max(next_radius(params.points + slot), record_radius(record));
+    let level = params.level | ((record + 1u) << LEVEL_BITS);
+    points[params.points + rank] = Point(record_position(record), radius, record_normal(record), level);
+    let ends = record_ends(record);
+    set_parents(rank, ends.xxy);
+}
+
+fn set_parents(rank: u32, corners: vec3<u32>) {
     let first = 3u * (dispatch.x + rank);
     parents[first] = corners.x;
     parents[first + 1u] = corners.y;

@@ -93,7 +93,8 @@ fn conflicting(own: Own, y: u32, reach_squared: f32) -> bool {
 /// Whether candidate y conflicts and is the first one of its owner that does: so each point is listed once.
 fn first_conflicting(own: Own, y: u32, reach_squared: f32) -> bool {
     let q = owners[y];
-    if q == own.p || !conflicting(own, y, reach_squared) {
+    // New points on creases and boundaries are there before all others: nobody has them.
+    if q == NONE || q == own.p || !conflicting(own, y, reach_squared) {
         return false;
     }
     for (var earlier = ring_starts[q]; earlier < y; earlier++) {

@@ -1,7 +1,7 @@
 // insertion: completes the new neighbourhood N' of each point of one class (section 5).
 // Twin: crates/reference/src/insertion.rs
 // The operations on N' are in shared/new_ring.wgsl, eq. 11 is in shared/discard.wgsl, the radii in shared/next_radii.wgsl.
-// One invocation per point of the class. dispatch: the class, its first member, its size, number of classes.
+// One invocation per point of the class. dispatch: one more than the class, its first member, its size, number of classes.
 //
 // Only candidates that earlier classes inserted are seen, so it does not matter when the members of one class run.
 
@@ -17,6 +17,7 @@
 @group(0) @binding(9) var<storage, read_write> next_radii: array<atomic<u32>>;
 @group(0) @binding(10) var<storage, read_write> arena: array<u32>;
 @group(0) @binding(11) var<storage, read_write> counters: Counters;
+@group(0) @binding(12) var<storage, read> curves: array<u32>;
 
 @compute @workgroup_size(64)
 fn insertion(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -42,14 +43,18 @@ fn allocate(p: u32) -> bool {
     let near = ring.near;
     var walk = ball_walk(ring.center, ring.radius);
     for (var slot = next_entry(&walk); slot != NONE; slot = next_entry(&walk)) {
-        if visible(slot) {
-            let d = offset_of(slot);
-            let d2 = dot3(d, d);
+        if !is_inserted(slot) {
+            continue;
+        }
+        let d = offset_of(slot);
+        let d2 = dot3(d, d);
+        if d2 < ring.radius * ring.radius && visible(slot) {
             let is_near = d2 < near * near && is_apart(d2, ring.radius);
             near_count += u32(is_near);
-            outer_count += u32(!is_near && d2 < ring.radius * ring.radius);
+            outer_count += u32(!is_near);
         }
     }
+    near_count += 2u * u32(ring.record != NONE);
     // Each candidate can enter N' or bring in one point of Y.
     let own = ring_starts[p + 1u] - ring_starts[p];
     let words = MEMBER_WORDS * (near_count + own) + own + outer_count;
@@ -65,20 +70,24 @@ fn gather(p: u32) {
     let near = ring.near;
     var walk = ball_walk(ring.center, ring.radius);
     for (var slot = next_entry(&walk); slot != NONE; slot = next_entry(&walk)) {
-        if !visible(slot) {
+        if !is_inserted(slot) {
             continue;
         }
         let d = offset_of(slot);
         let d2 = dot3(d, d);
+        if d2 >= ring.radius * ring.radius || !visible(slot) {
+            continue;
+        }
         // A new point in the centre's own place has no direction: it can only discard.
         if d2 < near * near && is_apart(d2, ring.radius) {
             set_member(ring.size, slot, angle_of(slot));
             ring.size += 1u;
-        } else if d2 < ring.radius * ring.radius {
+        } else {
             arena[ring.outer + ring.outer_size] = slot;
             ring.outer_size += 1u;
         }
     }
+    add_bounds();
     sort_members();
     for (var i = 0u; i < ring.size; i++) {
         set_gap(i, measured_gap(i));
@@ -121,9 +130,20 @@ fn complete(p: u32) {
     }
 }
 
-/// Whether an earlier class inserted the candidate, on the centre's side of the surface.
+/// Whether an earlier class inserted the candidate.
+fn is_inserted(slot: u32) -> bool {
+    return atomicLoad(&states[slot]) - 1u < dispatch.x;
+}
+
+/// Whether the centre sees a new point.
 fn visible(slot: u32) -> bool {
-    return atomicLoad(&states[slot]) - 1u < dispatch.x && same_side(candidate_normals[slot].xyz, ring.normal);
+    let normal = candidate_normals[slot].xyz;
+    if !same_side(normal, ring.normal) {
+        return false;
+    }
+    let center = Seen(ring.center, ring.normal, ring.record);
+    let other = Seen(candidate_positions[slot].xyz, normal, record_of_slot(slot));
+    return sees(center, ring.near_curves, ring.radius, other);
 }
 
 /// For an empty N': the candidate closest to the centre, the first of equals.

@@ -12,6 +12,7 @@
 /// First arena entry and number of members of each point.
 @group(0) @binding(5) var<storage, read_write> blocks: array<vec2<u32>>;
 @group(0) @binding(6) var<storage, read_write> counters: Counters;
+@group(0) @binding(7) var<storage, read> curves: array<u32>;
 
 /// The accurate neighbourhood N^g, or else the fuzzy one N^f.
 override accurate: bool = true;
@@ -74,7 +75,9 @@ fn ball_size(p: u32) -> u32 {
 /// Writes N^E without the pairs that eq. 6 rejects, and returns how many are left.
 fn consistent_ball(p: u32, first: u32) -> u32 {
     let center = points[p];
-    let frame = tangent_frame(center.normal);
+    let frame = frame_of(p);
+    let seen = Seen(center.position, center.normal, record_of(p));
+    let near_curves = is_near_curves(center.position, center.radius);
     let inverse = 1.0 / center.radius;
     var members = 0u;
     var walk = ball_walk(center.position, center.radius);
@@ -85,7 +88,9 @@ fn consistent_ball(p: u32, first: u32) -> u32 {
         let normal = points[q].normal;
         let d = points[q].position - center.position;
         let d2 = dot3(d, d);
-        let is_consistent = consistent(d * (1.0 / sqrt(d2)), center.normal, normal);
+        let other = Seen(points[q].position, normal, record_of(q));
+        let is_consistent = consistent(d * (1.0 / sqrt(d2)), center.normal, normal)
+            && sees(seen, near_curves, center.radius, other);
         let x = dot3(d, frame.e1);
         let y = dot3(d, frame.e2);
         let q2 = x * x + y * y;

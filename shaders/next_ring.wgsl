@@ -17,6 +17,7 @@
 /// Members: old points by index, then slots; bits of x and y on the tangent plane; bits of the angle, or NONE.
 @group(0) @binding(10) var<storage, read_write> arena: array<vec4<u32>>;
 @group(0) @binding(11) var<storage, read_write> counters: Counters;
+@group(0) @binding(12) var<storage, read> curves: array<u32>;
 
 /// The accurate neighbourhood N^g, or else the fuzzy one N^f.
 override accurate: bool = true;
@@ -32,6 +33,7 @@ struct Around {
     center: vec3<f32>,
     normal: vec3<f32>,
     frame: TangentFrame,
+    near_curves: bool,
 }
 
 @compute @workgroup_size(64)
@@ -43,7 +45,8 @@ fn next_ring(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
     let p = dispatch.x + index;
     let radius = bitcast<f32>(atomicLoad(&next_radii[p]));
     let center = points[p];
-    var around = Around(p, 0u, 0u, center.position, center.normal, tangent_frame(center.normal));
+    let near_curves = is_near_curves(center.position, radius);
+    var around = Around(p, 0u, 0u, center.position, center.normal, frame_of(p), near_curves);
     let own = ring_starts[p + 1u] - ring_starts[p];
     let most = own + count_new(around, radius);
     around.first = atomicAdd(&counters.arena, 4u * most) / 4u;
@@ -66,11 +69,17 @@ fn next_ring(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
     note_cut_loops(p);
 }
 
-/// Whether an inserted candidate is within the radius, on the centre's side.
+/// Whether an inserted candidate is within the radius, where the centre sees it.
 fn is_near(around: Around, slot: u32, radius: f32) -> bool {
     let d = candidate_positions[slot].xyz - around.center;
     let inserted = states[slot] - 1u < USED - 1u;
-    return inserted && dot3(d, d) <= radius * radius && same_side(candidate_normals[slot].xyz, around.normal);
+    let normal = candidate_normals[slot].xyz;
+    if !inserted || dot3(d, d) > radius * radius || !same_side(normal, around.normal) {
+        return false;
+    }
+    let center = Seen(around.center, around.normal, record_of(around.p));
+    let other = Seen(candidate_positions[slot].xyz, normal, record_of_slot(slot));
+    return sees(center, around.near_curves, radius, other);
 }
 
 fn count_new(around: Around, radius: f32) -> u32 {

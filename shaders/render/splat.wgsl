@@ -182,7 +182,7 @@ fn color(point: Point, normal: vec3<f32>, paint: u32) -> vec3<f32> {
             return ramp_color(point.radius);
         }
         case LEVEL: {
-            return ramp_color(f32(point.level));
+            return ramp_color(f32(point.level & 0xffu));
         }
         default: {
             return vec3(0.62, 0.59, 0.55);

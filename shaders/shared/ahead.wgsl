@@ -70,7 +70,7 @@ fn cover_ring(around: Around) {
         cover(member.x, d);
         let to = bitcast<f32>(next.w);
         let gap = select(to, to + TAU, last) - bitcast<f32>(member.w);
-        if gap < PI {
+        if gap < PI && !(last && is_on_curve(around.p)) {
             let side = offset_of(around, next.x) - d;
             cover(member.x, side);
             cover(next.x, side);

@@ -10,6 +10,10 @@ fn cell_coordinates(x: vec3<f32>) -> vec3<i32> {
 
 /// Index of a cell: its coordinates wrapped, x running fastest.
 fn cell_index(c: vec3<i32>) -> u32 {
-    let wrapped = vec3<u32>(c) & ((vec3(1u) << params.bits) - vec3(1u));
-    return wrapped.x | (wrapped.y << params.bits.x) | (wrapped.z << (params.bits.x + params.bits.y));
+    return wrapped_index(c, params.bits);
+}
+
+fn wrapped_index(c: vec3<i32>, bits: vec3<u32>) -> u32 {
+    let wrapped = vec3<u32>(c) & ((vec3(1u) << bits) - vec3(1u));
+    return wrapped.x | (wrapped.y << bits.x) | (wrapped.z << (bits.x + bits.y));
 }

@@ -14,7 +14,9 @@ fn discarded_by(slot: u32) -> u32 {
         try_discard(&closest, slot, arena[ring.outer + i]);
     }
     for (var i = 0u; i < ring.size; i++) {
-        try_discard(&closest, slot, slot_at(i));
+        if !is_bound(slot_at(i)) {
+            try_discard(&closest, slot, slot_at(i));
+        }
     }
     return closest.slot;
 }

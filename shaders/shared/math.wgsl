@@ -1,4 +1,4 @@
-// Vectors and angles. Twin: crates/reference/src/math.rs
+// Vectors and angles. Twin: crates/points/src/math.rs
 //
 // Only + - * / and square roots, in the twin's order: drivers differ in normalize, acos and atan2.
 

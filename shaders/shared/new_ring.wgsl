@@ -1,6 +1,6 @@
 // The new neighbourhood N' of one point while it is refined. Twin: `Fan` in crates/reference/src/insertion.rs
 //
-// Expects `points`, `candidate_positions`, `candidate_normals` and `arena`.
+// Expects `candidate_positions`, `candidate_normals`, `arena` and what curves.wgsl has.
 
 /// Whether angles between new neighbours are straight instead of curved.
 override plain_angle: bool = false;
@@ -9,7 +9,7 @@ override plain_angle: bool = false;
 const HYSTERESIS: f32 = 1.00001;
 /// A candidate nearer than this to an end of its gap, radians, does not split it.
 const SMALLEST_SPLIT: f32 = 1e-3;
-/// A member of N' in the arena: slot, bits of its angle on the tangent plane, bits of the gap to the next member.
+/// A member of N' in the arena: slot, or for a point that only bounds gaps its index after the last slot; bits of its angle on the tangent plane, bits of the gap to the next member.
 const MEMBER_WORDS: u32 = 3u;
 
 struct NewRing {
@@ -28,12 +28,20 @@ struct NewRing {
     angles: u32,
     outer: u32,
     outer_size: u32,
+    /// The centre's record, or NONE, and whether there are curves around.
+    record: u32,
+    near_curves: bool,
 }
 
 var<private> ring: NewRing;
 
 fn open_ring(p: u32) {
-    let frame = tangent_frame(points[p].normal);
+    let frame = frame_of(p);
+    ring.record = NONE;
+    if with_curves {
+        ring.record = record_of(p);
+    }
+    ring.near_curves = is_near_curves(points[p].position, points[p].radius);
     ring.center = points[p].position;
     ring.radius = points[p].radius;
     ring.inverse_radius = 1.0 / points[p].radius;
@@ -45,9 +53,39 @@ fn open_ring(p: u32) {
     ring.outer_size = 0u;
 }
 
-/// A new point relative to the centre.
+/// Whether a member is no new point and only bounds gaps.
+fn is_bound(slot: u32) -> bool {
+    return with_curves && slot >= params.slots;
+}
+
+/// A member relative to the centre.
 fn offset_of(slot: u32) -> vec3<f32> {
+    if is_bound(slot) {
+        return points[slot - params.slots].position - ring.center;
+    }
     return candidate_positions[slot].xyz - ring.center;
+}
+
+fn normal_of(slot: u32) -> vec3<f32> {
+    if is_bound(slot) {
+        return points[slot - params.slots].normal;
+    }
+    return candidate_normals[slot].xyz;
+}
+
+/// Where a step keeps the curves, the neighbours of a point along them bound its gaps, though they are not new.
+fn add_bounds() {
+    if ring.record == NONE || params.slots > params.fan_slots {
+        return;
+    }
+    let partners = record_partners(ring.record);
+    for (var k = 0u; k < 2u; k++) {
+        if partners[k] != NONE {
+            let slot = params.slots + record_point(partners[k]);
+            set_member(ring.size, slot, angle_of(slot));
+            ring.size += 1u;
+        }
+    }
 }
 
 fn angle_of(slot: u32) -> f32 {
@@ -86,8 +124,12 @@ fn can_join(slot: u32) -> bool {
     return is_apart(dot3(d, d), ring.radius);
 }
 
-/// Directed angle on the tangent plane from member i to the next one, in [0, 2π].
+/// Directed angle on the tangent plane from member i to the next one, in [0, 2π]. A sheet that ends at the centre has no
+/// next one after the last.
 fn directed_gap(i: u32) -> f32 {
+    if ring.record != NONE && i + 1u == ring.size {
+        return TAU;
+    }
     if i + 1u == ring.size {
         return (angle_at(0u) + TAU) - angle_at(i);
     }
@@ -96,6 +138,9 @@ fn directed_gap(i: u32) -> f32 {
 
 /// Angle from member i to the next one: curved (eq. 5), or plain; directed from π on.
 fn measured_gap(i: u32) -> f32 {
+    if ring.record != NONE && i + 1u == ring.size {
+        return 0.0;
+    }
     let directed = directed_gap(i);
     if directed >= PI {
         return directed;
@@ -107,7 +152,7 @@ fn measured_gap(i: u32) -> f32 {
     if plain_angle {
         return angle_between(from_a, from_b);
     }
-    return curved_angle(Corner(from_a, candidate_normals[a].xyz), Corner(from_b, candidate_normals[b].xyz));
+    return curved_angle(Corner(from_a, normal_of(a)), Corner(from_b, normal_of(b)));
 }
 
 fn set_member(i: u32, slot: u32, angle: f32) {

@@ -15,16 +15,19 @@ fn store_radii(p: u32) {
     var farthest = 0.0;
     for (var i = 0u; i < ring.size; i++) {
         let slot = slot_at(i);
+        if is_bound(slot) {
+            continue;
+        }
         let d = offset_of(slot);
         farthest = max(farthest, dot3(d, d));
         cover(slot, d);
-        if directed_gap(i) < PI {
-            let next = slot_at(next_member(i));
+        let next = slot_at(next_member(i));
+        if directed_gap(i) < PI && !is_bound(next) {
             let side = offset_of(next) - d;
             cover(slot, side);
             cover(next, side);
         }
     }
-    let radius = select(COVER * sqrt(farthest), ring.radius, ring.size == 0u);
+    let radius = select(COVER * sqrt(farthest), ring.radius, farthest == 0.0);
     atomicStore(&next_radii[p], bitcast<u32>(radius));
 }

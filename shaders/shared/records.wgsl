@@ -6,7 +6,8 @@ struct Point {
     position: vec3<f32>,
     radius: f32,
     normal: vec3<f32>,
-    /// The refinement step that inserted the point; 0 for input points.
+    /// Low byte: the refinement step that inserted the point; 0 for input points. Above it one more than the point's record
+    /// if it lies on a crease or boundary.
     level: u32,
 }
 
@@ -24,7 +25,7 @@ struct Params {
     lambda2: f32,
     /// Number of points of this level.
     points: u32,
-    /// Number of candidate slots: entries of all rings.
+    /// Number of slots: entries of all rings, then new points on creases and boundaries.
     slots: u32,
     /// The step, from 1.
     level: u32,
@@ -32,6 +33,10 @@ struct Params {
     arena_words: u32,
     ring_entries: u32,
     conflict_entries: u32,
+    /// Number of slots that are entries of rings.
+    fan_slots: u32,
+    /// Number of records of creases and boundaries on this level.
+    records: u32,
 }
 
 /// Counters that the host reads between stages.
@@ -61,13 +66,18 @@ struct Counters {
 /// No entry: the largest index.
 const NONE: u32 = 0xffffffffu;
 
+/// Bits of a point's level.
+const LEVEL_BITS: u32 = 8u;
+
 // Last words of arena entries of the neighbourhood: the point whose member it is, with a bit that says that fuzzy planes
 // removed it; or what says that it came back.
 const REMOVED: u32 = 0x80000000u;
 const BACK: u32 = 0xfffffffeu;
 
-// States of a candidate slot; from 1 on, one more than the class that inserted it.
+// States of a candidate slot; from 1 on, one more than the class that inserted it. Classes count from 1 here: new points
+// on creases and boundaries are in class 0.
 const FREE: u32 = 0u;
+const ON_CURVE: u32 = 1u;
 const USED: u32 = 0xfffffffeu;
 
 @group(0) @binding(0) var<uniform> params: Params;

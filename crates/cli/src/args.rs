@@ -10,7 +10,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
-use surfine::{Neighborhood, RefineParams, Rules};
+use surfine::{Boundary, Neighborhood, RefineParams, Rules};
 use surfine_points::Interpolation;
 use surfine_points::shapes::Shape;
 
@@ -128,6 +128,16 @@ pub(crate) struct RefineArgs {
     #[arg(long, value_name = "X", default_value = "0.5", value_parser = lambda2)]
     #[arg(allow_negative_numbers = true)]
     lambda2: f32,
+    /// Widest angle between neighbors that is no boundary, above 90 and below 360 degrees
+    #[arg(long, value_name = "DEG", default_value = "160", value_parser = theta_b)]
+    #[arg(allow_negative_numbers = true)]
+    boundary_angle: f32,
+    /// Take as boundary points those with a value other than 0 in this property, whatever the angle
+    #[arg(long, value_name = "PROPERTY", conflicts_with = "boundary_angle")]
+    pub(crate) boundary_property: Option<String>,
+    /// The surface is closed: look for no boundary
+    #[arg(long, conflicts_with_all = ["boundary_angle", "boundary_property"])]
+    closed: bool,
     /// How new points get a property: linear, nearest (corner), vote (of the corners) or unit, a direction, for three
     /// properties at once; may be given several times
     #[arg(long, value_name = "PROPERTY=RULE", value_parser = attribute_rule)]
@@ -237,6 +247,11 @@ impl RefineArgs {
         for name in &self.without {
             *rules.get_mut(name).expect("the name was checked") = false;
         }
+        let boundary = match &self.boundary_property {
+            _ if self.closed => Boundary::None,
+            Some(name) => Boundary::Marked(name.clone()),
+            None => Boundary::Angle(self.boundary_angle),
+        };
         let &Self { levels, simplified, plain_angle, .. } = self;
         let &Self { theta_f, theta_c, lambda1, lambda2, .. } = self;
         RefineParams {
@@ -248,6 +263,7 @@ impl RefineArgs {
             theta_c,
             lambda1,
             lambda2,
+            boundary,
             rules,
         }
     }
@@ -296,6 +312,14 @@ fn theta_c(text: &str) -> Result<f32, String> {
     let params = RefineParams { theta_c, ..RefineParams::default() };
     params.validate().map_err(|_| "it must be above 0 and below 180 degrees")?;
     Ok(theta_c)
+}
+
+/// An angle in degrees, to radians.
+fn theta_b(text: &str) -> Result<f32, String> {
+    let theta_b = number(text)?.to_radians();
+    let params = RefineParams { boundary: Boundary::Angle(theta_b), ..RefineParams::default() };
+    params.validate().map_err(|_| "it must be above 90 and below 360 degrees")?;
+    Ok(theta_b)
 }
 
 fn lambda1(text: &str) -> Result<f32, String> {

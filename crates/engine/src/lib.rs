@@ -18,6 +18,7 @@
 
 mod buffers;
 mod commands;
+pub mod curves;
 mod error;
 mod gpu;
 mod kernel;
@@ -32,7 +33,8 @@ pub use gpu::{Gpu, Mode, adapters, choose_adapter};
 pub use kernel::{Kernel, WORKGROUP_SIZE, exact_spirv};
 pub use refiner::{GpuRefined, Refiner};
 pub use surfine_points::{
-    Attribute, LevelReport, Neighborhood, PointSet, Progress, RefineParams, Refined, Rules, Vec3,
+    Attribute, Boundary, LevelReport, Neighborhood, PointSet, Progress, RefineParams, Refined,
+    Rules, Vec3,
 };
 pub use wgpu;
 

@@ -13,9 +13,13 @@ pub struct Point {
     pub radius: f32,
     /// Unit normal.
     pub normal: [f32; 3],
-    /// The refinement step that inserted the point; 0 for input points.
+    /// Low byte: the refinement step that inserted the point; 0 for input points. Above it one more than the point's record
+    /// if it lies on a crease or boundary.
     pub level: u32,
 }
+
+/// Bits of a point's level; above them is its record.
+pub const LEVEL_BITS: u32 = 8;
 
 /// What stays the same for all dispatches of one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -36,7 +40,8 @@ pub struct Params {
     pub arena_words: u32,
     pub ring_entries: u32,
     pub conflict_entries: u32,
-    pub padding: [u32; 2],
+    pub fan_slots: u32,
+    pub records: u32,
 }
 
 impl Params {

@@ -2,13 +2,15 @@
 
 use crate::buffers::{self, Buffer};
 use crate::commands::Uniforms;
-use crate::records::{Counters, Params, Point};
+use crate::curves;
+use crate::records::{Counters, LEVEL_BITS, Params, Point};
 use crate::scan::Scan;
 use crate::stages::{Buffers, Constants, Kernels, Sizing, Step, constants};
 use crate::{Error, Gpu, choose_adapter};
 use std::time::{Duration, Instant};
+use surfine_features::{Cloud, Features, Folded, Records, Refinement, fold, may_be_boundary};
 use surfine_points::{
-    Grid, GridShape, LevelReport, PointSet, Progress, RefineParams, Refined, Vec3,
+    Boundary, Grid, GridShape, LevelReport, PointSet, Progress, RefineParams, Refined, Vec3,
 };
 
 /// A device with compiled kernels and buffers, ready to refine one cloud after the other.
@@ -26,8 +28,10 @@ pub struct Refiner {
 /// A refined cloud that stays on the device.
 #[derive(Debug)]
 pub struct GpuRefined {
-    /// [`Point`](crate::records::Point)s of 32 bytes: position at offset 0, radius at 12, normal at 16, level at 28.
-    /// Usable as vertex or storage buffer and as copy source; it may be longer than [`GpuRefined::len`] points.
+    /// [`Point`](crate::records::Point)s of 32 bytes: position at offset 0, radius at 12, normal at 16, level in the byte at
+    /// 28. Usable as vertex or storage buffer and as copy source; it may be longer than [`GpuRefined::len`] points. A point
+    /// on a crease is one of these for each of its sides: those of further normals follow the input points, and the new
+    /// ones follow each other.
     pub points: wgpu::Buffer,
     /// The three corners of each new point's triangle, `u32` indices of points; entry 0 belongs to the first new point.
     pub parents: wgpu::Buffer,
@@ -37,6 +41,10 @@ pub struct GpuRefined {
     pub reports: Vec<LevelReport>,
     /// Bytes of the refiner's buffers when the last step ended, the result included.
     pub device_bytes: u64,
+    /// The input with one record for each normal.
+    records: Records,
+    /// Creases and boundaries of the last level.
+    features: Features,
 }
 
 impl GpuRefined {
@@ -89,7 +97,10 @@ impl Refiner {
     /// # Errors
     /// A kernel is refused.
     pub fn prepare(&mut self, params: &RefineParams) -> Result<(), Error> {
-        let constants = constants(params);
+        self.compile(constants(params, false))
+    }
+
+    fn compile(&mut self, constants: Constants) -> Result<(), Error> {
         if self.kernels.iter().all(|(c, _)| *c != constants) {
             let kernels = Kernels::new(&self.gpu, &constants)?;
             self.kernels.push((constants, kernels));
@@ -127,7 +138,7 @@ impl Refiner {
         progress: &mut dyn FnMut(Progress),
     ) -> Result<Refined, Error> {
         let result = self.refine_on_device(points, params, progress)?;
-        self.gpu.guarded(|| self.read_back(points, result))
+        self.gpu.guarded(|| self.read_back(points, params, result))
     }
 
     /// Refines a point set and leaves the result on the device. Attributes stay behind: interpolate them from the
@@ -159,9 +170,12 @@ impl Refiner {
         params: &RefineParams,
         progress: &mut dyn FnMut(Progress),
     ) -> Result<GpuRefined, Error> {
-        self.upload(points)?;
-        let mut shape = GridShape::fit(&points.positions, &points.radii);
-        let mut level_sizes = vec![points.len()];
+        let records = Records::split(points)?;
+        let Records { positions, normals, radii, groups, .. } = &records;
+        let mut features = Features::creases(Cloud { positions, normals, radii }, groups);
+        self.upload(&records, &features)?;
+        let mut shape = GridShape::fit(positions, radii);
+        let mut level_sizes = vec![records.len()];
         let mut reports = Vec::new();
         for level in 1..=params.levels {
             let count = level_sizes[level_sizes.len() - 1];
@@ -169,11 +183,21 @@ impl Refiner {
             let mut clock = Clock { at, progress, times: Vec::new(), begin: Instant::now() };
             let step =
                 Params { points: count as u32, level, ..Params::new(params).with_grid(&shape) };
-            let input = (level == 1).then_some((&shape, points));
-            let earlier = count - points.len();
-            let mut report = self.run_step(params, step, input, earlier, &mut clock)?;
+            let mut rings = None;
+            if level == 1 && params.boundary != Boundary::None {
+                let input = (&shape, points, &records);
+                rings = self.find_boundary(params, step, input, &mut features, &mut clock)?;
+            }
+            let new = if Features::splits_at(level) { features.split() } else { Vec::new() };
+            curves::upload(&self.gpu, &mut self.buffers.curves, &features, &new)?;
+            let input = (level == 1).then_some((&shape, &records));
+            let on_curves = OnCurves { records: features.old as u32, new: new.len() as u32 };
+            let earlier = count - records.len();
+            let mut report =
+                self.run_step(params, step, input, rings, on_curves, earlier, &mut clock)?;
             report.stages = clock.stop();
             level_sizes.push(report.points_out);
+            features.commit(report.points_out - new.len());
             // The area stays, so the spacing goes with the root of the number of points, and the grid with it.
             let ratio = (count as f32 / report.points_out.max(1) as f32).sqrt();
             shape = GridShape::with_cell(shape.origin, shape.cell * ratio, report.points_out);
@@ -182,34 +206,89 @@ impl Refiner {
         let device_bytes = self.buffers.size();
         let (points, parents) =
             (self.buffers.points.take(&self.gpu)?, self.buffers.parents.take(&self.gpu)?);
-        Ok(GpuRefined { points, parents, level_sizes, reports, device_bytes })
+        Ok(GpuRefined { points, parents, level_sizes, reports, device_bytes, records, features })
     }
 
-    /// Runs the stages of one refinement step. The grid of the `input` is built here, later levels make theirs.
+    fn step(
+        &mut self,
+        refine: &RefineParams,
+        params: Params,
+        on_curves: OnCurves,
+    ) -> Result<Step<'_>, Error> {
+        let constants = constants(refine, on_curves.records > 0);
+        self.compile(constants.clone())?;
+        let Self { gpu, kernels, uniforms, buffers, scan, sizing } = self;
+        let kernels = kernels.iter().find(|(c, _)| *c == constants);
+        let (_, kernels) = kernels.expect("they were compiled");
+        let params = Params { records: on_curves.records, ..params };
+        let (rules, curve_points) = (refine.rules, on_curves.new);
+        Ok(Step { gpu, kernels, uniforms, buffers, scan, sizing, rules, params, curve_points })
+    }
+
+    /// Finds the boundaries of the input (section 6). The rings that show that there are none serve the first step.
+    fn find_boundary(
+        &mut self,
+        refine: &RefineParams,
+        params: Params,
+        (shape, points, records): (&GridShape, &PointSet, &Records),
+        features: &mut Features,
+        clock: &mut Clock<'_>,
+    ) -> Result<Option<Rings>, Error> {
+        curves::upload(&self.gpu, &mut self.buffers.curves, features, &[])?;
+        let on_curves = OnCurves { records: features.old as u32, new: 0 };
+        let mut step = self.step(refine, params, on_curves)?;
+        clock.start("grid");
+        step.upload_grid(&grid_of(shape, records))?;
+        clock.start("neighborhood");
+        let counters = step.neighborhood()?;
+        clock.start("boundary");
+        let theta_b = match refine.boundary {
+            Boundary::Angle(theta_b) => theta_b,
+            // Whatever the gap.
+            Boundary::None | Boundary::Marked(_) => 0.0,
+        };
+        let mut gaps = step.boundary_gaps(theta_b)?;
+        let slots = step.params.slots;
+        gaps.retain(|gap| may_be_boundary(points, refine, gap));
+        let Records { positions, normals, radii, .. } = records;
+        let before = features.records.len();
+        features.add_boundary(Cloud { positions, normals, radii }, &gaps);
+        if features.records.len() == before {
+            return Ok(Some(Rings { counters, slots }));
+        }
+        self.upload(records, features)?;
+        Ok(None)
+    }
+
+    /// Runs the stages of one refinement step. The grid of the `input` is built here, later levels make theirs. `rings` says
+    /// that they are there already.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "each is another thing that the loop over levels knows"
+    )]
     fn run_step(
         &mut self,
         refine: &RefineParams,
         params: Params,
-        input: Option<(&GridShape, &PointSet)>,
+        input: Option<(&GridShape, &Records)>,
+        rings: Option<Rings>,
+        on_curves: OnCurves,
         earlier: usize,
         clock: &mut Clock<'_>,
     ) -> Result<LevelReport, Error> {
-        let Self { gpu, kernels, uniforms, buffers, scan, sizing } = self;
-        let constants = constants(refine);
-        let kernels = kernels.iter().find(|(c, _)| *c == constants);
-        let (_, kernels) = kernels.expect("they were prepared");
-        let rules = refine.rules;
-        let mut step = Step { gpu, kernels, uniforms, buffers, scan, sizing, rules, params };
-        clock.start("grid");
-        match input {
-            Some((shape, points)) => {
-                let positions = points.positions.iter().copied();
-                step.upload_grid(&Grid::build(*shape, (0..).zip(positions)))?;
+        let mut step = self.step(refine, params, on_curves)?;
+        let counters = if let Some(Rings { counters, slots }) = rings {
+            (step.params.slots, step.params.fan_slots) = (slots, slots);
+            counters
+        } else {
+            clock.start("grid");
+            match input {
+                Some((shape, records)) => step.upload_grid(&grid_of(shape, records))?,
+                None => step.grid_points()?,
             }
-            None => step.grid_points()?,
-        }
-        clock.start("neighborhood");
-        let counters = step.neighborhood()?;
+            clock.start("neighborhood");
+            step.neighborhood()?
+        };
         clock.start("candidates");
         step.candidates()?;
         clock.start("conflicts");
@@ -227,44 +306,69 @@ impl Refiner {
             points_in: params.points as usize,
             points_out: params.points as usize + new as usize,
             ball_neighbors: u64::from(ball_high) << 32 | u64::from(ball_low),
-            ring_neighbors: u64::from(step.params.slots),
+            ring_neighbors: u64::from(step.params.fan_slots),
             classes: classes.len() - 1,
             isolated: isolated as usize,
             stages: Vec::new(),
         })
     }
 
-    fn upload(&mut self, points: &PointSet) -> Result<(), Error> {
-        let normals = points.unit_normals();
-        let records: Vec<Point> = (0..points.len())
+    fn upload(&mut self, records: &Records, features: &Features) -> Result<(), Error> {
+        let record_of = features.by_point(records.len());
+        let points: Vec<Point> = (0..records.len())
             .map(|i| Point {
-                position: points.positions[i].to_array(),
-                radius: points.radii[i],
-                normal: normals[i].to_array(),
-                level: 0,
+                position: records.positions[i].to_array(),
+                radius: records.radii[i],
+                normal: records.normals[i].to_array(),
+                // No record is the largest index.
+                level: record_of[i].wrapping_add(1) << LEVEL_BITS,
             })
             .collect();
-        self.buffers.points = Buffer::with_data(&self.gpu, "points", &records)?;
+        self.buffers.points = Buffer::with_data(&self.gpu, "points", &points)?;
         self.buffers.counters.reserve(&self.gpu, size_of::<Counters>() as u64)
     }
 
-    fn read_back(&self, input: &PointSet, result: GpuRefined) -> Result<Refined, Error> {
+    fn read_back(
+        &self,
+        input: &PointSet,
+        params: &RefineParams,
+        result: GpuRefined,
+    ) -> Result<Refined, Error> {
         let bytes = (result.len() * size_of::<Point>()) as u64;
         let points = buffers::read(&self.gpu, &result.points, bytes)?;
-        let new = result.len() - input.len();
-        let parents = buffers::read(&self.gpu, &result.parents, 12 * new as u64)?;
-        let parents: Vec<[u32; 3]> = bytemuck::pod_collect_to_vec(&parents);
-        let mut refined = input.clone();
-        let records: Vec<Point> = bytemuck::pod_collect_to_vec(&points);
-        refined.radii = records.iter().map(|p| p.radius).collect();
-        let new = &records[input.len()..];
-        refined.positions.extend(new.iter().map(|p| Vec3::from_array(p.position)));
-        refined.normals.extend(new.iter().map(|p| Vec3::from_array(p.normal)));
-        refined.extend_attributes(&parents);
-        let GpuRefined { level_sizes, reports, device_bytes, .. } = result;
+        let points: Vec<Point> = bytemuck::pod_collect_to_vec(&points);
+        let GpuRefined { level_sizes, reports, device_bytes, records, features, .. } = result;
+        let new = &points[records.len()..];
+        let parents = buffers::read(&self.gpu, &result.parents, 12 * new.len() as u64)?;
+        let refinement = Refinement {
+            positions: new.iter().map(|p| Vec3::from_array(p.position)).collect(),
+            normals: new.iter().map(|p| Vec3::from_array(p.normal)).collect(),
+            radii: points.iter().map(|p| p.radius).collect(),
+            parents: bytemuck::pod_collect_to_vec(&parents),
+            level_sizes,
+        };
+        let folded = fold(input, &records, &features, &refinement, params.boundary.property());
+        let Folded { points, parents, level_sizes } = folded;
         let device_bytes = Some(device_bytes);
-        Ok(Refined { points: refined, parents, level_sizes, reports, device_bytes })
+        Ok(Refined { points, parents, level_sizes, reports, device_bytes })
     }
+}
+
+/// How many records there are on creases and boundaries, and how many new ones.
+#[derive(Clone, Copy)]
+struct OnCurves {
+    records: u32,
+    new: u32,
+}
+
+/// The rings of the first step.
+struct Rings {
+    counters: Counters,
+    slots: u32,
+}
+
+fn grid_of(shape: &GridShape, records: &Records) -> Grid {
+    Grid::build(*shape, (0..).zip(records.positions.iter().copied()))
 }
 
 /// Times the stages and tells the caller where the run stands.
@@ -284,7 +388,12 @@ impl Clock<'_> {
 
     fn close(&mut self) {
         if !self.at.stage.is_empty() {
-            self.times.push((self.at.stage, self.begin.elapsed()));
+            // Where boundaries are found the rings are made twice.
+            let (stage, time) = (self.at.stage, self.begin.elapsed());
+            match self.times.iter_mut().find(|(name, _)| *name == stage) {
+                Some((_, sum)) => *sum += time,
+                None => self.times.push((stage, time)),
+            }
         }
         self.begin = Instant::now();
     }

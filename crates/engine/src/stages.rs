@@ -10,6 +10,7 @@ use crate::records::{Counters, Params, Point};
 use crate::scan::Scan;
 use crate::shaders::SHADERS;
 use crate::{Error, Gpu};
+use surfine_features::Gap;
 use surfine_points::{Grid, Neighborhood, RefineParams, Rules};
 
 /// Rounds of colouring between two looks at what is left.
@@ -37,13 +38,14 @@ impl Default for Sizing {
 /// Values of the kernels' `override`s.
 pub type Constants = Vec<(&'static str, f64)>;
 
-/// The values of the kernels' `override`s that parameters ask for.
-pub fn constants(params: &RefineParams) -> Constants {
+/// The values of the kernels' `override`s that parameters ask for, for clouds with creases or boundaries or without.
+pub fn constants(params: &RefineParams, with_curves: bool) -> Constants {
     let accurate = params.effective_neighborhood() == Neighborhood::Accurate;
     let plain_angle = params.effective_plain_angle();
     let modes =
         [("accurate", accurate), ("simplified", params.simplified), ("plain_angle", plain_angle)];
-    let all = modes.into_iter().chain(params.rules.named());
+    let modes = modes.into_iter().chain([("with_curves", with_curves)]);
+    let all = modes.chain(params.rules.named());
     all.map(|(name, on)| (name, f64::from(on))).collect()
 }
 
@@ -109,6 +111,11 @@ buffers! {
     next_radii: "radii",
     new_indices: "new indices",
     counters: "counters",
+    /// Creases and boundaries.
+    curves: "curves",
+    /// Points whose rings leave wide gaps, and their number.
+    gaps: "boundary gaps",
+    gap_count: "boundary gap count",
 }
 
 /// One refinement step on the device.
@@ -121,6 +128,8 @@ pub(crate) struct Step<'a> {
     pub(crate) sizing: &'a Sizing,
     pub(crate) rules: Rules,
     pub(crate) params: Params,
+    /// New points that this step puts on creases and boundaries.
+    pub(crate) curve_points: u32,
 }
 
 impl Step<'_> {
@@ -216,7 +225,8 @@ impl Step<'_> {
             let (counters, totals) = self.read(&[(&self.buffers.ring_starts, n)])?;
             let enough = self.make_room_in_arena(&counters, &mut chunk)?;
             if enough && totals[0] <= self.params.ring_entries {
-                self.params.slots = totals[0];
+                self.params.fan_slots = totals[0];
+                self.params.slots = totals[0] + self.curve_points;
                 return Ok(counters);
             }
             self.buffers.ring_entries.reserve(self.gpu, 2 * WORD * u64::from(totals[0]))?;
@@ -230,7 +240,7 @@ impl Step<'_> {
         commands.clear(&b.counters, words_of(&b.counters).into());
         commands.clear(&b.ring_starts, 1);
         let k = self.kernels;
-        let ball = [&b.points, &b.grid, &b.arena, &b.blocks, &b.counters];
+        let ball = [&b.points, &b.grid, &b.arena, &b.blocks, &b.counters, &b.curves];
         let ball = commands.bind(k.get("neighborhood_ball"), &ball);
         let badness = [&b.points, &b.blocks, &b.arena, &b.counters];
         let badness = commands.bind(k.get("neighborhood_badness"), &badness);
@@ -273,6 +283,44 @@ impl Step<'_> {
         Ok(false)
     }
 
+    /// The widest gaps of the rings (section 6), of those wider than an angle in radians, by point.
+    pub(crate) fn boundary_gaps(&mut self, theta_b: f32) -> Result<Vec<Gap>, Error> {
+        let room = self.params.points / 16 + 1024;
+        self.buffers.gaps.reserve(self.gpu, 4 * WORD * u64::from(room))?;
+        self.buffers.gap_count.reserve(self.gpu, WORD)?;
+        let count = loop {
+            let b = &*self.buffers;
+            let room = words_of(&b.gaps) / 4;
+            let mut commands = self.commands();
+            commands.clear(&b.gap_count, 1);
+            let buffers = [&b.ring_starts, &b.ring_entries, &b.gaps, &b.gap_count];
+            let words = [theta_b.to_bits(), room, 0, 0];
+            let kernel = self.kernels.get("boundary_gaps");
+            commands.run(kernel, &buffers, words, self.params.points);
+            commands.finish()?;
+            let count: u32 = bytemuck::pod_read_unaligned(&read_parts(
+                self.gpu,
+                &[(b.gap_count.raw(), 0, WORD)],
+            )?);
+            if count <= room {
+                break count;
+            }
+            self.buffers.gaps.reserve(self.gpu, 4 * WORD * u64::from(count))?;
+        };
+        let bytes = 4 * WORD * u64::from(count);
+        let words = read_parts(self.gpu, &[(self.buffers.gaps.raw(), 0, bytes)])?;
+        let words: Vec<[u32; 4]> = bytemuck::pod_collect_to_vec(&words);
+        let gap = |[point, begin, end, angle]: [u32; 4]| Gap {
+            point,
+            begin,
+            end,
+            angle: f32::from_bits(angle),
+        };
+        let mut gaps: Vec<Gap> = words.into_iter().map(gap).collect();
+        gaps.sort_unstable_by_key(|gap| gap.point);
+        Ok(gaps)
+    }
+
     /// `candidates` of all fans.
     pub(crate) fn candidates(&mut self) -> Result<(), Error> {
         let slots = u64::from(self.params.slots);
@@ -283,9 +331,11 @@ impl Step<'_> {
         let mut commands = self.commands();
         let b = &*self.buffers;
         let inputs = [&b.points, &b.ring_starts, &b.ring_entries];
-        let outputs = [&b.candidate_positions, &b.candidate_normals, &b.owners, &b.states];
+        let outputs =
+            [&b.candidate_positions, &b.candidate_normals, &b.owners, &b.states, &b.curves];
         let kernel = self.kernels.get("candidates");
-        commands.run(kernel, &[&inputs[..], &outputs].concat(), [0; 4], self.params.points);
+        let invocations = self.params.points.max(self.curve_points);
+        commands.run(kernel, &[&inputs[..], &outputs].concat(), [0; 4], invocations);
         commands.finish()
     }
 
@@ -416,7 +466,7 @@ impl Step<'_> {
         commands.clear(&b.next_radii, 2 * (u64::from(points) + u64::from(slots)));
         let inputs = [&b.points, &b.ring_starts, &b.candidate_positions, &b.candidate_normals];
         let lists = [&b.grid, &b.class_members];
-        let outputs = [&b.states, &b.next_radii, &b.arena, &b.counters];
+        let outputs = [&b.states, &b.next_radii, &b.arena, &b.counters, &b.curves];
         let kernel = self.kernels.get("insertion");
         let insertion = commands.bind(kernel, &[&inputs[..], &lists, &outputs].concat());
         let classes = starts.len() as u32 - 1;
@@ -424,7 +474,7 @@ impl Step<'_> {
             for first in (bounds[0]..bounds[1]).step_by(part as usize) {
                 let count = part.min(bounds[1] - first);
                 commands.clear(&b.counters, 1);
-                commands.dispatch(&insertion, [class, first, count, classes], count);
+                commands.dispatch(&insertion, [class + 1, first, count, classes], count);
             }
         }
         commands.clear(&b.new_indices, 1);
@@ -459,7 +509,7 @@ impl Step<'_> {
         commands.clear(&b.counters, words_of(&b.counters).into());
         let rings = [&b.points, &b.ring_starts, &b.ring_entries];
         let candidates = [&b.candidate_positions, &b.candidate_normals, &b.grid, &b.states];
-        let outputs = [&b.next_radii, &b.arena, &b.counters];
+        let outputs = [&b.next_radii, &b.arena, &b.counters, &b.curves];
         let kernel = self.kernels.get("next_ring");
         let bound = commands.bind(kernel, &[&rings[..], &candidates, &outputs].concat());
         for first in (0..n).step_by(part as usize) {
@@ -481,7 +531,7 @@ impl Step<'_> {
         let mut commands = self.commands();
         let rings = [&b.points, &b.ring_starts, &b.ring_entries];
         let candidates = [&b.candidate_positions, &b.candidate_normals, &b.owners];
-        let outputs = [&b.new_indices, &b.next_radii, &b.parents];
+        let outputs = [&b.new_indices, &b.next_radii, &b.parents, &b.curves];
         let kernel = self.kernels.get("commit");
         let invocations = self.params.points.max(self.params.slots);
         commands.run(

@@ -5,6 +5,7 @@
 
 pub mod files;
 mod grid;
+pub mod math;
 mod model;
 mod params;
 pub mod ply;
@@ -16,6 +17,6 @@ pub use glam::Vec3;
 pub use glam::{DVec3, UVec3};
 pub use grid::{Grid, GridShape};
 pub use model::{Completed, Model};
-pub use params::{Neighborhood, ParamError, RefineParams, Rules};
-pub use point_set::{Attribute, Interpolation, Invalid, PointSet, Values};
+pub use params::{Boundary, Neighborhood, ParamError, RefineParams, Rules};
+pub use point_set::{Attribute, Interpolation, Invalid, PointSet, Values, unit_normal};
 pub use refined::{LevelReport, Progress, Refined};

@@ -12,6 +12,33 @@ pub enum Neighborhood {
     Fuzzy,
 }
 
+/// Which points may lie on a boundary (section 6).
+#[derive(Clone, Debug, PartialEq)]
+pub enum Boundary {
+    /// None: the surface is closed.
+    None,
+    /// Those whose ring leaves a gap wider than θ_b, radians in (π/2, 2π). Chains of them become boundaries.
+    Angle(f32),
+    /// Those with a value other than zero in the property of that name.
+    Marked(String),
+}
+
+impl Boundary {
+    /// The property that marks the boundary.
+    pub fn property(&self) -> Option<&str> {
+        match self {
+            Self::Marked(name) => Some(name),
+            Self::None | Self::Angle(_) => None,
+        }
+    }
+}
+
+impl Default for Boundary {
+    fn default() -> Self {
+        Self::Angle(160.0 * PI / 180.0)
+    }
+}
+
 /// Parameters of the refinement. All are free of scale; the defaults fit every cloud.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RefineParams {
@@ -32,6 +59,8 @@ pub struct RefineParams {
     pub lambda1: f32,
     /// Share of a new point's radius that is its discard sphere (eq. 11), in [0, 1]. Default 1/2.
     pub lambda2: f32,
+    /// Which points may lie on a boundary (section 6). Default: θ_b of 160°.
+    pub boundary: Boundary,
     /// Rules beyond the paper. Default all; [`Rules::LITERAL`] is the paper's text.
     pub rules: Rules,
 }
@@ -131,6 +160,7 @@ impl Default for RefineParams {
             theta_c: 89.0 * PI / 180.0,
             lambda1: 0.577_350_26,
             lambda2: 0.5,
+            boundary: Boundary::default(),
             rules: Rules::ALL,
         }
     }
@@ -167,7 +197,13 @@ impl RefineParams {
         )?;
         check(self.theta_c > 0.0 && self.theta_c < PI, "theta_c", self.theta_c, "(0, π) radians")?;
         check(self.lambda1 > 0.0 && self.lambda1 <= 1.0, "lambda1", self.lambda1, "(0, 1]")?;
-        check((0.0..=1.0).contains(&self.lambda2), "lambda2", self.lambda2, "[0, 1]")
+        check((0.0..=1.0).contains(&self.lambda2), "lambda2", self.lambda2, "[0, 1]")?;
+        match self.boundary {
+            Boundary::Angle(angle) => {
+                check(angle > PI / 2.0 && angle < 2.0 * PI, "theta_b", angle, "(π/2, 2π) radians")
+            }
+            Boundary::None | Boundary::Marked(_) => Ok(()),
+        }
     }
 
     /// Sine of `theta_f`, through f64 so that every system library rounds it alike.

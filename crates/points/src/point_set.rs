@@ -102,6 +102,11 @@ impl Values {
         matches!(self, Self::F32(_) | Self::F64(_))
     }
 
+    /// Whether an entry is not zero.
+    pub fn is_nonzero(&self, index: usize) -> bool {
+        each_type!(self, column => column[index] != Default::default())
+    }
+
     fn push_copy(&mut self, index: usize) {
         each_type!(self, column => column.push(column[index]));
     }
@@ -280,14 +285,7 @@ impl PointSet {
 
     /// The normals as the refinement uses them: those whose squared length is off 1 by more than 1e-6 are normalised.
     pub fn unit_normals(&self) -> Vec<Vec3> {
-        let unit = |n: &Vec3| {
-            if (n.length_squared() - 1.0).abs() > 1e-6 {
-                n.as_dvec3().normalize().as_vec3()
-            } else {
-                *n
-            }
-        };
-        self.normals.iter().map(unit).collect()
+        self.normals.iter().copied().map(unit_normal).collect()
     }
 
     /// How many normals [`PointSet::unit_normals`] changes.
@@ -328,6 +326,11 @@ impl PointSet {
             .collect();
         vectors.as_chunks_mut::<3>().0.iter_mut().for_each(|vector| normalize(vector, first));
     }
+}
+
+/// A normal as the refinement uses it: normalised if its squared length is off 1 by more than 1e-6.
+pub fn unit_normal(n: Vec3) -> Vec3 {
+    if (n.length_squared() - 1.0).abs() > 1e-6 { n.as_dvec3().normalize().as_vec3() } else { n }
 }
 
 /// Brings the vectors of three columns to unit length, from an entry on; zero vectors stay.

@@ -3,18 +3,24 @@
 use crate::math::TAU;
 use crate::neighborhood::Rings;
 use crate::pn_triangle;
+use crate::visible::Seen;
 use crate::{Level, NO_POINT};
 use glam::Vec3;
 use rayon::prelude::*;
+use surfine_features::Record;
 use surfine_points::RefineParams;
 
 /// A fan triangle needs a gap below π(1 - 1e-4) radians: at π the fan has no triangle there.
 pub const WIDEST_GAP: f32 = 3.141_278_5;
 
+/// A triangle between a point and both its neighbours on a curve has a gap of no more than 150°, but at corners, radians.
+pub const WIDEST_SHEET: f32 = 2.617_994;
+
 /// Radii exceed the distance to the farthest natural neighbour by this factor.
 pub const NATURAL: f32 = 1.25;
 
-/// The possible new points of all fans, one for each ring entry (slot).
+/// The possible new points of all fans, one for each ring entry (slot), then the new points on creases and boundaries,
+/// which are inserted in any case.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Candidates {
     /// Position during this step: displaced by φ, or the centre of gravity if `simplified`.
@@ -23,13 +29,36 @@ pub struct Candidates {
     pub normals: Vec<Vec3>,
     /// `ρ`: largest distance to the three corners, or -1 where the slot holds no candidate.
     pub rho: Vec<f32>,
-    /// The point whose fan holds the slot.
+    /// The point whose fan holds the slot; [`NO_POINT`] for a point on a curve.
     pub owners: Vec<u32>,
     /// Of each point: within this distance new points are new neighbours (section 5).
     pub near: Vec<f32>,
+    /// The first slot of the new points on creases and boundaries.
+    pub first_on_curve: usize,
 }
 
 impl Candidates {
+    /// Number of slots.
+    pub fn len(&self) -> usize {
+        self.rho.len()
+    }
+
+    /// Whether there are no slots.
+    pub fn is_empty(&self) -> bool {
+        self.rho.is_empty()
+    }
+
+    /// A slot's point as others see it.
+    pub fn seen(&self, slot: usize, level: &Level) -> Seen {
+        let (position, normal) = (self.positions[slot], self.normals[slot]);
+        let rank = slot.checked_sub(self.first_on_curve);
+        let record = match (rank, &level.curves) {
+            (Some(rank), Some(curves)) => (curves.features.old + rank) as u32,
+            _ => NO_POINT,
+        };
+        Seen { position, normal, record }
+    }
+
     /// Whether the slot holds a candidate.
     pub fn exists(&self, slot: usize) -> bool {
         self.rho[slot] > 0.0
@@ -39,7 +68,7 @@ impl Candidates {
 /// A slot that holds no candidate.
 const NONE: (Vec3, Vec3, f32) = (Vec3::ZERO, Vec3::ZERO, -1.0);
 
-/// Computes the candidates of every fan.
+/// Computes the candidates of every fan, and takes the new points on curves.
 pub fn candidates(level: &Level, rings: &Rings, params: &RefineParams) -> Candidates {
     let fans: Vec<Vec<(Vec3, Vec3, f32)>> = (0..level.len())
         .into_par_iter()
@@ -57,6 +86,13 @@ pub fn candidates(level: &Level, rings: &Rings, params: &RefineParams) -> Candid
             result.rho.push(rho);
             result.owners.push(p as u32);
         }
+    }
+    result.first_on_curve = result.len();
+    for point in &level.curve_points {
+        result.positions.push(point.position);
+        result.normals.push(point.normal);
+        result.rho.push(point.rho);
+        result.owners.push(NO_POINT);
     }
     result
 }
@@ -84,7 +120,7 @@ fn candidate(
     p: usize,
     i: usize,
 ) -> (Vec3, Vec3, f32) {
-    let Some(triangle) = fan_triangle(rings, p, i) else { return NONE };
+    let Some(triangle) = fan_triangle(level, rings, p, i) else { return NONE };
     let corners = triangle.map(|c| level.corner(c));
     let position = if params.simplified {
         pn_triangle::center_of_gravity(corners)
@@ -108,8 +144,8 @@ fn candidate(
 }
 
 /// The corners of a fan triangle, smallest index first and orientation kept, so that the copies of one triangle in
-/// three fans are computed alike. `None` if the gap is not below π.
-pub fn fan_triangle(rings: &Rings, p: usize, i: usize) -> Option<[u32; 3]> {
+/// three fans are computed alike. `None` if the gap is not below π, or goes around the end of a crease point's sheet.
+pub fn fan_triangle(level: &Level, rings: &Rings, p: usize, i: usize) -> Option<[u32; 3]> {
     let ring = rings.ring(p);
     let last = i + 1 == ring.len();
     let (a, b) = (ring[i], if last { ring[0] } else { ring[i + 1] });
@@ -117,7 +153,21 @@ pub fn fan_triangle(rings: &Rings, p: usize, i: usize) -> Option<[u32; 3]> {
     if gap >= WIDEST_GAP {
         return None;
     }
+    if let Some(record) = level.record(p)
+        && (last || spans_sheet(level, record, a.id, b.id, gap))
+    {
+        return None;
+    }
     Some(canonical([p as u32, a.id, b.id]))
+}
+
+/// Whether a triangle lies between a curve's point and both its neighbours there, almost in a line: a sheet does not end so.
+fn spans_sheet(level: &Level, record: &Record, a: u32, b: u32, gap: f32) -> bool {
+    let is_partner = |id: u32, k: usize| {
+        let partner = record.partners[k];
+        partner != NO_POINT && level.seen(id as usize).record == partner
+    };
+    record.sides < 3 && gap > WIDEST_SHEET && is_partner(a, 0) && is_partner(b, 1)
 }
 
 /// The triangle turned until its smallest index comes first.

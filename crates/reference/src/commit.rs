@@ -10,12 +10,19 @@ use surfine_points::RefineParams;
 pub fn commit(level: &mut Level, state: &LevelState, params: &RefineParams) -> Vec<[u32; 3]> {
     let LevelState { rings, candidates, insertion, covers, .. } = state;
     let mut parents = Vec::new();
-    level.step += 1;
     let larger = |(a, b): (&f32, &f32)| a.max(*b);
     level.radii = insertion.radii.iter().zip(&covers.radii).map(larger).collect();
-    for slot in (0..rings.len()).filter(|&s| insertion.inserted[s]) {
+    for slot in (0..candidates.len()).filter(|&s| insertion.inserted[s]) {
+        level.radii.push(insertion.slot_radii[slot].max(covers.slot_radii[slot]));
+        if let Some(rank) = slot.checked_sub(candidates.first_on_curve) {
+            let point = level.curve_points[rank];
+            parents.push(point.parents);
+            level.positions.push(point.position);
+            level.normals.push(point.normal);
+            continue;
+        }
         let owner = candidates.owners[slot] as usize;
-        let triangle = fan_triangle(rings, owner, slot - rings.slots(owner).start);
+        let triangle = fan_triangle(level, rings, owner, slot - rings.slots(owner).start);
         let triangle = triangle.expect("an inserted candidate has a triangle");
         let (position, normal) = if params.simplified {
             // Section 7, simplification 4: the displacement is computed for inserted points only.
@@ -30,7 +37,7 @@ pub fn commit(level: &mut Level, state: &LevelState, params: &RefineParams) -> V
         parents.push(triangle);
         level.positions.push(position);
         level.normals.push(normal);
-        level.radii.push(insertion.slot_radii[slot].max(covers.slot_radii[slot]));
     }
+    level.end_step();
     parents
 }

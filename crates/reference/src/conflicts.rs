@@ -4,9 +4,9 @@
 //! a candidate of one lies within `λ1 r` of the other, so that it would enter its N', or
 //! candidates x and y of the two have `|x - y| < λ2 max(ρ_x, ρ_y)`, so that one would discard the other.
 
-use crate::Level;
 use crate::candidates::Candidates;
 use crate::neighborhood::Rings;
+use crate::{Level, NO_POINT};
 use rayon::prelude::*;
 use surfine_points::{Grid, RefineParams};
 
@@ -80,7 +80,8 @@ fn found_from(
         let d = position - center;
         let d2 = d.dot(d);
         let q = candidates.owners[y as usize];
-        if d2 > reach_squared || q as usize == p || found.contains(&q) {
+        // Points on curves are there before all others: nobody has them.
+        if q == NO_POINT || d2 > reach_squared || q as usize == p || found.contains(&q) {
             return;
         }
         let close = d2 < near * near

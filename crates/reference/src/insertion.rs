@@ -7,9 +7,10 @@
 use crate::Level;
 use crate::candidates::Candidates;
 use crate::coloring::Classes;
-use crate::math::{PI, TAU, angle_between, direction_angle, is_apart, tangent_frame};
+use crate::math::{PI, TAU, angle_between, direction_angle, is_apart};
 use crate::neighborhood::Rings;
 use crate::pn_triangle::{Corner, curved_angle};
+use crate::visible::View;
 use glam::Vec3;
 use rayon::prelude::*;
 use surfine_points::{Grid, RefineParams};
@@ -76,10 +77,14 @@ struct Refinement {
 
 /// Refines all points, class by class.
 pub fn insertion(stage: Stage<'_>, classes: &Classes, order: Order) -> Insertion {
-    let slots = stage.rings.len();
+    let slots = stage.candidates.len();
+    let on_curve = stage.candidates.first_on_curve;
+    let mut slot_radii = vec![0.0; on_curve];
+    slot_radii.extend(stage.level.curve_points.iter().map(|point| point.radius));
     let mut result = Insertion {
-        inserted: vec![false; slots],
-        slot_radii: vec![0.0; slots],
+        // New points on curves come before the first class.
+        inserted: (0..slots).map(|slot| slot >= on_curve).collect(),
+        slot_radii,
         radii: stage.level.radii.clone(),
     };
     for members in &classes.members {
@@ -118,6 +123,7 @@ impl Insertion {
 /// A member of N', seen from the centre.
 #[derive(Clone, Copy)]
 struct Member {
+    /// A new point's slot; after the last slot come the points of the level, for members that only bound gaps.
     slot: u32,
     /// Angle on the tangent plane.
     angle: f32,
@@ -128,6 +134,10 @@ struct Member {
 /// The neighbourhood of one point while it is refined.
 struct Fan<'a> {
     stage: Stage<'a>,
+    p: usize,
+    view: View<'a>,
+    /// Whether the centre lies on a crease or a boundary, where its sheet ends.
+    on_curve: bool,
     center: Vec3,
     normal: Vec3,
     /// Within this distance new points are new neighbours.
@@ -187,10 +197,13 @@ impl<'a> Fan<'a> {
     fn new(stage: Stage<'a>, p: u32) -> Self {
         let p = p as usize;
         let normal = stage.level.normals[p];
-        let (e1, e2) = tangent_frame(normal);
+        let (e1, e2) = stage.level.frame(p);
         let radius = stage.level.radii[p];
         Self {
             stage,
+            p,
+            view: View::new(stage.level, p, radius),
+            on_curve: stage.level.record(p).is_some(),
             center: stage.level.positions[p],
             normal,
             near: stage.candidates.near[p],
@@ -203,9 +216,25 @@ impl<'a> Fan<'a> {
         }
     }
 
-    /// A new point relative to the centre.
+    /// The point of the level that a member stands for, if it only bounds gaps.
+    fn bound(&self, slot: u32) -> Option<usize> {
+        (slot as usize).checked_sub(self.stage.candidates.len())
+    }
+
+    /// A member relative to the centre.
     fn offset(&self, slot: u32) -> Vec3 {
-        self.stage.candidates.positions[slot as usize] - self.center
+        let position = match self.bound(slot) {
+            Some(point) => self.stage.level.positions[point],
+            None => self.stage.candidates.positions[slot as usize],
+        };
+        position - self.center
+    }
+
+    fn normal_of(&self, slot: u32) -> Vec3 {
+        match self.bound(slot) {
+            Some(point) => self.stage.level.normals[point],
+            None => self.stage.candidates.normals[slot as usize],
+        }
     }
 
     fn angle_of(&self, slot: u32) -> f32 {
@@ -225,13 +254,19 @@ impl<'a> Fan<'a> {
             }
             let d = self.offset(slot);
             let d2 = d.dot(d);
+            if d2 >= radius * radius
+                || !self.view.sees(self.stage.candidates.seen(slot as usize, self.stage.level))
+            {
+                return;
+            }
             // A new point in the centre's own place has no direction: it can only discard.
             if d2 < near * near && is_apart(d2, radius) {
                 ring.push(Member { slot, angle: self.angle_of(slot), gap: 0.0 });
-            } else if d2 < radius * radius {
+            } else {
                 self.outer.push(slot);
             }
         });
+        ring.extend(self.bounds());
         ring.sort_by(|a, b| a.angle.total_cmp(&b.angle).then(a.slot.cmp(&b.slot)));
         self.ring = ring;
         for i in 0..self.ring.len() {
@@ -239,9 +274,28 @@ impl<'a> Fan<'a> {
         }
     }
 
-    /// Directed angle on the tangent plane from member `i` to the next one, in [0, 2π].
+    /// Where a step keeps the curves, the neighbours of a point along them bound its gaps, though they are not new.
+    fn bounds(&self) -> Vec<Member> {
+        let level = self.stage.level;
+        let Some(record) = level.record(self.p).filter(|_| level.keeps_curves()) else {
+            return Vec::new();
+        };
+        let features = level.curves.iter().map(|curves| &curves.features);
+        let partners = features
+            .flat_map(|f| record.partners.iter().filter_map(|&r| f.records.get(r as usize)));
+        let slot = |point: u32| self.stage.candidates.len() as u32 + point;
+        partners
+            .map(|partner| slot(partner.point))
+            .map(|slot| Member { slot, angle: self.angle_of(slot), gap: 0.0 })
+            .collect()
+    }
+
+    /// Directed angle on the tangent plane from member `i` to the next one, in [0, 2π]. A sheet that ends at the centre has
+    /// no next one after the last.
     fn directed_gap(&self, i: usize) -> f32 {
-        if i + 1 == self.ring.len() {
+        if self.on_curve && i + 1 == self.ring.len() {
+            TAU
+        } else if i + 1 == self.ring.len() {
             (self.ring[0].angle + TAU) - self.ring[i].angle
         } else {
             self.ring[i + 1].angle - self.ring[i].angle
@@ -254,6 +308,9 @@ impl<'a> Fan<'a> {
 
     /// Angle from member `i` to the next one: curved (eq. 5), or plain; directed from π on.
     fn gap(&self, i: usize) -> f32 {
+        if self.on_curve && i + 1 == self.ring.len() {
+            return 0.0;
+        }
         let directed = self.directed_gap(i);
         if directed >= PI {
             return directed;
@@ -267,7 +324,7 @@ impl<'a> Fan<'a> {
         }
         let corner = |slot: u32| Corner {
             position: self.offset(slot) * self.inverse_radius,
-            normal: self.stage.candidates.normals[slot as usize],
+            normal: self.normal_of(slot),
         };
         curved_angle(corner(a), corner(b))
     }
@@ -327,7 +384,8 @@ impl<'a> Fan<'a> {
         let x = self.stage.candidates.positions[slot as usize];
         let normal = self.stage.candidates.normals[slot as usize];
         let mut closest: Option<(u32, f32)> = None;
-        for h in self.outer.iter().copied().chain(self.ring.iter().map(|m| m.slot)) {
+        let ring = self.ring.iter().map(|m| m.slot).filter(|&slot| self.bound(slot).is_none());
+        for h in self.outer.iter().copied().chain(ring) {
             let d = x - self.stage.candidates.positions[h as usize];
             let d2 = d.dot(d);
             let sphere = self.stage.params.lambda2 * self.stage.candidates.rho[h as usize];
@@ -359,19 +417,22 @@ impl<'a> Fan<'a> {
 
     /// New radius of the centre: it covers N'. A point without new neighbours keeps its radius.
     fn new_radius(&self) -> f32 {
-        let farthest =
-            self.ring.iter().map(|m| self.offset(m.slot)).map(|d| d.dot(d)).fold(0.0, f32::max);
-        if self.ring.is_empty() { self.radius } else { COVER * farthest.sqrt() }
+        let new = self.ring.iter().map(|m| m.slot).filter(|&slot| self.bound(slot).is_none());
+        let farthest = new.map(|slot| self.offset(slot)).map(|d| d.dot(d)).fold(0.0, f32::max);
+        if farthest == 0.0 { self.radius } else { COVER * farthest.sqrt() }
     }
 
     /// Radii that the members of N' need to cover the centre and their two neighbours in N'.
     fn covers(&self) -> Vec<(u32, f32)> {
         let mut covers = Vec::new();
         for (i, member) in self.ring.iter().enumerate() {
+            if self.bound(member.slot).is_some() {
+                continue;
+            }
             let d = self.offset(member.slot);
             covers.push((member.slot, COVER * d.dot(d).sqrt()));
-            if self.directed_gap(i) < PI {
-                let next = self.ring[self.next(i)].slot;
+            let next = self.ring[self.next(i)].slot;
+            if self.directed_gap(i) < PI && self.bound(next).is_none() {
                 let d = self.offset(next) - self.offset(member.slot);
                 let radius = COVER * d.dot(d).sqrt();
                 covers.extend([(member.slot, radius), (next, radius)]);

@@ -9,22 +9,26 @@ pub mod coloring;
 pub mod commit;
 pub mod conflicts;
 pub mod insertion;
-pub mod math;
 pub mod neighborhood;
 pub mod next_ring;
 pub mod pn_triangle;
 mod refine;
+pub mod visible;
+
+pub use surfine_points::math;
 
 pub use refine::{Error, LevelState, candidate_grid, point_grid, refine, refine_with, run_level};
 
 use glam::Vec3;
 use pn_triangle::Corner;
-use surfine_points::PointSet;
+use surfine_features::{Cloud, CurvePoint, Features, Record, Records};
+use visible::{Curves, Seen};
 
 /// No point: the largest index.
 pub const NO_POINT: u32 = u32::MAX;
 
-/// The points of one level, `P^l`: what a refinement step reads and appends to.
+/// The points of one level, `P^l`: what a refinement step reads and appends to. A point on a crease is one record for each
+/// of its sides.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Level {
     /// Positions.
@@ -35,17 +39,59 @@ pub struct Level {
     pub radii: Vec<f32>,
     /// Refinement steps that led here: 0 for the input.
     pub step: u32,
+    /// Creases and boundaries; `None` where there are none.
+    pub curves: Option<Curves>,
+    /// The new points that the step puts on them.
+    pub curve_points: Vec<CurvePoint>,
 }
 
 impl Level {
-    /// The input level of a point set.
-    pub fn new(points: &PointSet) -> Self {
-        Self {
-            positions: points.positions.clone(),
-            normals: points.unit_normals(),
-            radii: points.radii.clone(),
+    /// The input level: its points taken apart to records, with creases but without boundaries.
+    pub fn new(records: &Records) -> Self {
+        let mut level = Self {
+            positions: records.positions.clone(),
+            normals: records.normals.clone(),
+            radii: records.radii.clone(),
             step: 0,
+            curves: None,
+            curve_points: Vec::new(),
+        };
+        level.set_features(Features::creases(level.cloud(), &records.groups));
+        level
+    }
+
+    /// What the host's search for curves reads.
+    pub fn cloud(&self) -> Cloud<'_> {
+        Cloud { positions: &self.positions, normals: &self.normals, radii: &self.radii }
+    }
+
+    /// Replaces the creases and boundaries.
+    pub fn set_features(&mut self, features: Features) {
+        self.curves = (!features.is_empty()).then(|| Curves::new(features, self.len()));
+    }
+
+    /// Begins a step: puts new points on the curves if it is one that splits them.
+    pub fn begin_step(&mut self) {
+        if let Some(curves) = &mut self.curves
+            && Features::splits_at(self.step + 1)
+        {
+            self.curve_points = curves.features.split();
         }
+    }
+
+    /// Ends a step: the new points on the curves, the last of the level, become part of these.
+    pub fn end_step(&mut self) {
+        self.step += 1;
+        if let Some(Curves { mut features, .. }) = self.curves.take() {
+            let first = self.len() - std::mem::take(&mut self.curve_points).len();
+            features.commit(first);
+            self.set_features(features);
+        }
+    }
+
+    /// Whether this step leaves the curves as they are.
+    pub fn keeps_curves(&self) -> bool {
+        self.curve_points.is_empty()
     }
 
     /// Number of points.
@@ -61,5 +107,22 @@ impl Level {
     /// A point as a corner of a triangle.
     pub fn corner(&self, id: u32) -> Corner {
         Corner { position: self.positions[id as usize], normal: self.normals[id as usize] }
+    }
+
+    /// The record of a point on a crease or boundary.
+    pub fn record(&self, p: usize) -> Option<&Record> {
+        let curves = self.curves.as_ref()?;
+        curves.features.records.get(curves.record_of[p] as usize)
+    }
+
+    /// A point as others see it.
+    pub fn seen(&self, p: usize) -> Seen {
+        let record = self.curves.as_ref().map_or(NO_POINT, |curves| curves.record_of[p]);
+        Seen { position: self.positions[p], normal: self.normals[p], record }
+    }
+
+    /// Two unit vectors that span the tangent plane of a point.
+    pub fn frame(&self, p: usize) -> (Vec3, Vec3) {
+        surfine_features::frame(self.normals[p], self.record(p))
     }
 }

@@ -1,8 +1,9 @@
 //! One-ring neighbourhoods (section 4). Twin: `shaders/neighborhood.wgsl`.
 
 use crate::Level;
-use crate::math::{TAU, direction_angle, is_apart, tangent_frame};
+use crate::math::{TAU, direction_angle, is_apart};
 use crate::pn_triangle::geodesic_distance;
+use crate::visible::View;
 use glam::Vec3;
 use rayon::prelude::*;
 use surfine_points::{Grid, Neighborhood, RefineParams, Rules};
@@ -119,8 +120,9 @@ fn consistent_ball(
     p: usize,
 ) -> (usize, Vec<Neighbor>) {
     let (center, normal, radius) = (level.positions[p], level.normals[p], level.radii[p]);
-    let frame = tangent_frame(normal);
+    let frame = level.frame(p);
     let inverse = 1.0 / radius;
+    let view = View::new(level, p, radius);
     let mut size = 0;
     let mut ball = Vec::new();
     grid.visit_ball(center, radius, |id| {
@@ -132,7 +134,9 @@ fn consistent_ball(
         }
         size += 1;
         let other = level.normals[id as usize];
-        if consistent(d, d2, normal, other, params.rules) {
+        let sees =
+            consistent(d, d2, normal, other, params.rules) && view.sees(level.seen(id as usize));
+        if sees {
             ball.extend(Neighbor::new(id, d, frame, inverse, [normal, other], params));
         }
     });

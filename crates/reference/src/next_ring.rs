@@ -7,8 +7,9 @@
 
 use crate::Level;
 use crate::insertion::{COVER, Insertion, Stage};
-use crate::math::{PI, TAU, direction_angle, is_apart, tangent_frame};
+use crate::math::{PI, TAU, direction_angle, is_apart};
 use crate::neighborhood::{Neighbor, is_behind};
+use crate::visible::View;
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -24,7 +25,8 @@ pub struct Covers {
 /// Finds the radii that cover the next level's rings; none if the rule is off.
 pub fn next_ring(stage: Stage<'_>, insertion: &Insertion) -> Covers {
     let points = stage.level.len();
-    let mut result = Covers { radii: vec![0.0; points], slot_radii: vec![0.0; stage.rings.len()] };
+    let mut result =
+        Covers { radii: vec![0.0; points], slot_radii: vec![0.0; stage.candidates.len()] };
     if !stage.params.rules.next_ring {
         return result;
     }
@@ -46,6 +48,7 @@ fn covers(stage: Stage<'_>, insertion: &Insertion, p: usize) -> Vec<(u32, f32)> 
     let (center, normal) = (level.positions[p], level.normals[p]);
     let radius = insertion.radii[p];
     let mut around = Around::new(stage, p);
+    let view = View::new(level, p, radius);
     for entry in rings.ring(p) {
         let i = entry.id as usize;
         around.add(entry.id, level.positions[i], level.normals[i]);
@@ -54,7 +57,8 @@ fn covers(stage: Stage<'_>, insertion: &Insertion, p: usize) -> Vec<(u32, f32)> 
         let i = slot as usize;
         let d = candidates.positions[i] - center;
         let near = d.dot(d) <= radius * radius;
-        if insertion.inserted[i] && near && stage.same_side(candidates.normals[i], normal) {
+        let sees = insertion.inserted[i] && near && stage.same_side(candidates.normals[i], normal);
+        if sees && view.sees(candidates.seen(i, level)) {
             around.add(level.len() as u32 + slot, candidates.positions[i], candidates.normals[i]);
         }
     });
@@ -64,6 +68,8 @@ fn covers(stage: Stage<'_>, insertion: &Insertion, p: usize) -> Vec<(u32, f32)> 
 /// Points around a centre on its tangent plane.
 struct Around<'a> {
     stage: Stage<'a>,
+    /// Whether the centre lies on a crease or a boundary, where its sheet ends.
+    on_curve: bool,
     center: Vec3,
     normal: Vec3,
     e1: Vec3,
@@ -77,10 +83,22 @@ struct Around<'a> {
 impl<'a> Around<'a> {
     fn new(stage: Stage<'a>, p: usize) -> Self {
         let Level { positions, normals, radii, .. } = stage.level;
-        let (e1, e2) = tangent_frame(normals[p]);
+        let (e1, e2) = stage.level.frame(p);
         let (center, normal, radius) = (positions[p], normals[p], radii[p]);
         let (members, offsets) = (Vec::new(), Vec::new());
-        Self { stage, center, normal, e1, e2, inverse: 1.0 / radius, radius, members, offsets }
+        let on_curve = stage.level.record(p).is_some();
+        Self {
+            stage,
+            on_curve,
+            center,
+            normal,
+            e1,
+            e2,
+            inverse: 1.0 / radius,
+            radius,
+            members,
+            offsets,
+        }
     }
 
     fn add(&mut self, id: u32, position: Vec3, normal: Vec3) {
@@ -119,7 +137,8 @@ impl<'a> Around<'a> {
             let (next_angle, next, next_d) = ring[if i + 1 == ring.len() { 0 } else { i + 1 }];
             let gap =
                 if i + 1 == ring.len() { (next_angle + TAU) - angle } else { next_angle - angle };
-            if gap < PI {
+            let goes_around = self.on_curve && i + 1 == ring.len();
+            if gap < PI && !goes_around {
                 let side = next_d - d;
                 let radius = COVER * side.dot(side).sqrt();
                 covers.extend([(id, radius), (next, radius)]);

@@ -10,8 +10,10 @@ use crate::next_ring::{Covers, next_ring};
 use crate::{Level, NO_POINT};
 use std::fmt;
 use std::time::Instant;
+use surfine_features::{Gap, Records, Refinement, fold, may_be_boundary};
 use surfine_points::{
-    Grid, GridShape, Invalid, LevelReport, ParamError, PointSet, Progress, RefineParams, Refined,
+    Boundary, Grid, GridShape, Invalid, LevelReport, ParamError, PointSet, Progress, RefineParams,
+    Refined,
 };
 
 /// Why a refinement did not run.
@@ -71,16 +73,24 @@ pub fn refine_with(
 ) -> Result<Refined, Error> {
     params.validate()?;
     points.validate()?;
-    let mut level = Level::new(points);
+    let records = Records::split(points)?;
+    let mut level = Level::new(&records);
+    let begin = Instant::now();
+    let mut ready = find_boundary(&mut level, points, params);
+    let mut boundary = (params.boundary != Boundary::None).then(|| begin.elapsed());
     let mut result = Refined { level_sizes: vec![level.len()], ..Refined::default() };
     for step in 1..=params.levels {
         let points = level.len();
         if points > LARGEST_LEVEL {
             return Err(Invalid::TooMany(points).into());
         }
-        let (state, mut report) = run_level(&level, params, order, &mut |stage| {
+        level.begin_step();
+        let (state, mut report) = run_stages(&level, ready.take(), params, order, &mut |stage| {
             progress(Progress { level: step, levels: params.levels, stage, points });
         });
+        if let Some(time) = boundary.take() {
+            report.stages.insert(0, ("boundary", time));
+        }
         let begin = Instant::now();
         let parents = commit(&mut level, &state, params);
         report.stages.push(("commit", begin.elapsed()));
@@ -89,15 +99,42 @@ pub fn refine_with(
         result.level_sizes.push(level.len());
         result.reports.push(report);
     }
-    let mut refined = points.clone();
-    let new = points.len()..level.len();
-    refined.positions.extend_from_slice(&level.positions[new.clone()]);
-    refined.normals.extend_from_slice(&level.normals[new]);
-    refined.radii = level.radii;
-    refined.extend_attributes(&result.parents);
-    result.points = refined;
+    let new = records.len()..level.len();
+    let refinement = Refinement {
+        positions: level.positions[new.clone()].to_vec(),
+        normals: level.normals[new].to_vec(),
+        radii: level.radii,
+        parents: result.parents,
+        level_sizes: result.level_sizes,
+    };
+    let features = level.curves.map(|curves| curves.features).unwrap_or_default();
+    let folded = fold(points, &records, &features, &refinement, params.boundary.property());
+    result.points = folded.points;
+    result.parents = folded.parents;
+    result.level_sizes = folded.level_sizes;
     Ok(result)
 }
+
+/// Finds the boundaries of the input (section 6). The grid and the rings that show that there are none serve the first step.
+fn find_boundary(level: &mut Level, points: &PointSet, params: &RefineParams) -> Option<Ready> {
+    if params.boundary == Boundary::None || params.levels == 0 {
+        return None;
+    }
+    let grid = point_grid(level);
+    let rings = neighborhood(level, &grid, params);
+    let ring = |p: usize| rings.ring(p).iter().map(|entry| (entry.id, entry.angle));
+    let gaps = (0..level.len()).filter_map(|p| Gap::widest(p as u32, ring(p)));
+    let gaps: Vec<Gap> = gaps.filter(|gap| may_be_boundary(points, params, gap)).collect();
+    let mut features = level.curves.take().map(|curves| curves.features).unwrap_or_default();
+    let before = features.records.len();
+    features.add_boundary(level.cloud(), &gaps);
+    let is_closed = features.records.len() == before;
+    level.set_features(features);
+    is_closed.then_some((grid, rings))
+}
+
+/// A grid and rings that need not be computed again.
+type Ready = (Grid, Rings);
 
 /// Everything that one refinement step computes before its commit.
 #[derive(Clone, Debug)]
@@ -120,6 +157,16 @@ pub fn run_level(
     order: Order,
     progress: &mut dyn FnMut(&'static str),
 ) -> (LevelState, LevelReport) {
+    run_stages(level, None, params, order, progress)
+}
+
+fn run_stages(
+    level: &Level,
+    ready: Option<Ready>,
+    params: &RefineParams,
+    order: Order,
+    progress: &mut dyn FnMut(&'static str),
+) -> (LevelState, LevelReport) {
     let mut report = LevelReport { points_in: level.len(), ..LevelReport::default() };
     let mut stage =
         |name: &'static str, begin: Instant| report.stages.push((name, begin.elapsed()));
@@ -128,13 +175,16 @@ pub fn run_level(
         Instant::now()
     };
 
-    let begin = start("grid");
-    let grid = point_grid(level);
-    stage("grid", begin);
+    let (grid, rings) = ready.unwrap_or_else(|| {
+        let begin = start("grid");
+        let grid = point_grid(level);
+        stage("grid", begin);
 
-    let begin = start("neighborhood");
-    let rings = neighborhood(level, &grid, params);
-    stage("neighborhood", begin);
+        let begin = start("neighborhood");
+        let rings = neighborhood(level, &grid, params);
+        stage("neighborhood", begin);
+        (grid, rings)
+    });
 
     let begin = start("candidates");
     let candidates = candidates(level, &rings, params);

@@ -1,0 +1,68 @@
+//! The creases and boundaries of a level as the kernels read them: a mirror of `shaders/shared/curves.wgsl`.
+
+use crate::buffers::Buffer;
+use crate::{Error, Gpu};
+use surfine_features::{CurvePoint, Features, Record};
+use surfine_points::Vec3;
+
+/// Words of the header, of a record and of a segment.
+pub const HEADER_WORDS: usize = 12;
+pub const RECORD_WORDS: usize = 24;
+pub const SEGMENT_WORDS: usize = 4;
+
+/// The table: a header, the records (those of new points last), the segments, and these by cell.
+pub(crate) fn table(features: &Features, new: &[CurvePoint]) -> Vec<u32> {
+    let (grid, reach) = features.segment_grid();
+    let segments = HEADER_WORDS + RECORD_WORDS * features.records.len();
+    let starts = segments + SEGMENT_WORDS * features.segments.len();
+    let mut words: Vec<u32> = Vec::new();
+    words.extend(bits(grid.shape.origin));
+    words.push((1.0 / grid.shape.cell).to_bits());
+    words.extend(grid.shape.bits);
+    words.extend([grid.shape.cell, reach].map(f32::to_bits));
+    words.extend([segments, starts, starts + grid.starts.len()].map(|at| at as u32));
+    for (i, record) in features.records.iter().enumerate() {
+        let new = i.checked_sub(features.old).map(|rank| &new[rank]);
+        words.extend(record_words(record, new));
+    }
+    words.extend(features.segments.iter().flat_map(|segment| segment.sides.into_iter().flatten()));
+    words.extend(grid.starts);
+    words.extend(grid.items);
+    words
+}
+
+fn record_words(record: &Record, new: Option<&CurvePoint>) -> [u32; RECORD_WORDS] {
+    let [x, y, z] = bits(record.position);
+    let [nx, ny, nz] = bits(record.normal);
+    let [mx, my, mz] = bits(record.conormal);
+    let [before, after] = record.partners;
+    let [from, to] = record.wedge.map(f32::to_bits);
+    let (radius, rho) = new.map_or((0, 0), |new| (new.radius.to_bits(), new.rho.to_bits()));
+    let [near, _, far] = new.map_or([0; 3], |new| new.parents);
+    let &Record { point, first, sides, segment, .. } = record;
+    [
+        x, y, z, point, //
+        nx, ny, nz, before, //
+        mx, my, mz, after, //
+        first, sides, segment, radius, //
+        from, to, near, far, //
+        rho, 0, 0, 0,
+    ]
+}
+
+fn bits(v: Vec3) -> [u32; 3] {
+    v.to_array().map(f32::to_bits)
+}
+
+/// Writes the table of a step into its buffer; a few words where there are no curves.
+pub(crate) fn upload(
+    gpu: &Gpu,
+    buffer: &mut Buffer,
+    features: &Features,
+    new: &[CurvePoint],
+) -> Result<(), Error> {
+    let words = if features.is_empty() { vec![0; HEADER_WORDS] } else { table(features, new) };
+    buffer.reserve(gpu, 4 * words.len() as u64)?;
+    gpu.queue.write_buffer(buffer.raw(), 0, bytemuck::cast_slice(&words));
+    Ok(())
+}

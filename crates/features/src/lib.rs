@@ -1,0 +1,157 @@
+//! Feature curves of a cloud: creases, corners and boundaries (section 6 of the paper).
+//!
+//! A point on a crease has a normal for each of its sides. Here it is as many [`Record`]s, which never see each other: the
+//! stages of a refinement step run for each record by itself. A boundary point is one record with one side. Records that
+//! follow each other along a curve are joined by [`Segment`]s, which are split at every second step.
+//!
+//! There are few of them (about the root of the number of points), and nothing off the curves bears on them: so all of
+//! this runs on the host, for the CPU reference and the GPU engine alike. What they do to the stages is in
+//! `crates/reference/src/visible.rs` and its kernels.
+
+mod boundary;
+mod conormals;
+mod curve;
+mod fold;
+mod records;
+mod segments;
+mod topology;
+
+pub use boundary::{Gap, may_be_boundary};
+pub use curve::CurvePoint;
+pub use fold::{Folded, Refinement, fold};
+pub use records::Records;
+
+use glam::Vec3;
+use surfine_points::math::tangent_frame;
+use surfine_points::{Grid, GridShape};
+
+/// No record, no point: the largest index.
+pub const NONE: u32 = u32::MAX;
+
+/// One side of a crease or corner point, or a boundary point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Record {
+    /// Its index among the points of the level.
+    pub point: u32,
+    /// Position.
+    pub position: Vec3,
+    /// Unit normal of the side.
+    pub normal: Vec3,
+    /// Unit vector in the tangent plane that points into the side's own sheet.
+    pub conormal: Vec3,
+    /// The records next to it along the curves that bound its side, or [`NONE`]: first that where the sheet begins, counter-
+    /// clockwise seen from outside, then that where it ends.
+    pub partners: [u32; 2],
+    /// First record of its point.
+    pub first: u32,
+    /// Number of records of its point: 1 for a boundary point.
+    pub sides: u32,
+    /// Angles in the frame of [`Record::frame`] between which its fan lies, radians.
+    pub wedge: [f32; 2],
+    /// The segment of the level on which this step puts the record; [`NONE`] for records of the level itself.
+    pub segment: u32,
+}
+
+impl Record {
+    /// Tangent vectors at the record, right-handed with the normal. The first one points away from the sheet, so that the
+    /// angles of a fan never wrap around.
+    pub fn frame(&self) -> (Vec3, Vec3) {
+        let e1 = -self.conormal;
+        (e1, self.normal.cross(e1))
+    }
+
+    /// Whether it is a boundary point.
+    pub fn is_boundary(&self) -> bool {
+        self.sides == 1
+    }
+}
+
+/// A piece of a curve between two points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Segment {
+    /// For each of its sides the records at its two ends; a boundary has one side, and [`NONE`]s.
+    pub sides: [[u32; 2]; 2],
+}
+
+impl Segment {
+    /// Whether it is a piece of a boundary.
+    pub fn is_boundary(&self) -> bool {
+        self.sides[1][0] == NONE
+    }
+}
+
+/// The feature curves of one level.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Features {
+    /// Records, those of one point next to each other.
+    pub records: Vec<Record>,
+    /// The pieces of the curves.
+    pub segments: Vec<Segment>,
+    /// Number of records before this step put new ones on the curves.
+    pub old: usize,
+}
+
+/// Positions, unit normals and radii of the records of a level.
+#[derive(Clone, Copy, Debug)]
+#[expect(missing_docs, reason = "the fields are named as everywhere")]
+pub struct Cloud<'a> {
+    pub positions: &'a [Vec3],
+    pub normals: &'a [Vec3],
+    pub radii: &'a [f32],
+}
+
+impl Features {
+    /// The creases and corners of the input: groups of records that share a point, joined to segments. Groups that no
+    /// segment reaches are no features.
+    pub fn creases(cloud: Cloud<'_>, groups: &[Vec<u32>]) -> Self {
+        let mut features = Self::default();
+        if groups.is_empty() {
+            return features;
+        }
+        let segments = segments::crease_segments(cloud, groups);
+        features.add_creases(cloud, groups, &segments);
+        conormals::set_conormals(&mut features, cloud);
+        features.set_fans(0..features.records.len());
+        features.old = features.records.len();
+        features
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.records.is_empty()
+    }
+
+    /// The records of the point to which a record belongs.
+    pub fn sides_of(&self, record: u32) -> std::ops::Range<usize> {
+        let Record { first, sides, .. } = self.records[record as usize];
+        first as usize..(first + sides) as usize
+    }
+
+    /// Whether step `step` (from 1) splits the segments: every second one does, as Kobbelt's √3 subdivision does at
+    /// boundaries (section 6).
+    pub fn splits_at(step: u32) -> bool {
+        step.is_multiple_of(2)
+    }
+
+    /// The record of each point of the level, [`NONE`] for smooth points.
+    pub fn by_point(&self, points: usize) -> Vec<u32> {
+        self.by_point_of(0..self.old, points)
+    }
+
+    /// The segments of the level by the cell of their middle; and half the length of the longest.
+    pub fn segment_grid(&self) -> (Grid, f32) {
+        let ends = |s: &Segment| s.sides[0].map(|r| self.records[r as usize].position);
+        let middles: Vec<Vec3> =
+            self.segments.iter().map(ends).map(|[a, b]| (a + b) * 0.5).collect();
+        let lengths: Vec<f32> =
+            self.segments.iter().map(ends).map(|[a, b]| (b - a).length().max(1e-30)).collect();
+        let longest = lengths.iter().copied().fold(0.0, f32::max);
+        let shape = GridShape::fit(&middles, &lengths);
+        (Grid::build(shape, (0u32..).zip(middles)), 0.5 * longest)
+    }
+}
+
+/// Two unit vectors that span the tangent plane of a point: those of its record, if it lies on a feature curve.
+pub fn frame(normal: Vec3, record: Option<&Record>) -> (Vec3, Vec3) {
+    record.map_or_else(|| tangent_frame(normal), Record::frame)
+}

@@ -1,0 +1,206 @@
+//! What a point sees when there are creases and boundaries (section 6). Twin: `shaders/shared/visible.wgsl`.
+//!
+//! The paper splits a crease point's neighbourhood by the most similar normal. That is not enough: eq. 6 never rejects a
+//! pair across an edge of 90°, so fans would cross the crease. Here points see each other only if they lie on one sheet
+//! as far as the curves nearby can tell. It filters `N^E`, N' and Y alike; no step averages across a crease.
+
+use crate::Level;
+use crate::math::{direction_angle, is_apart};
+use glam::Vec3;
+use surfine_features::{Features, NONE, Record};
+use surfine_points::Grid;
+
+/// A point belongs to a side only if their normals differ by less than this cosine says,
+const LIKE: f32 = 0.3;
+/// the sine of its elevation over the side's tangent plane is below this,
+const STEEP: f32 = 0.75;
+/// and it does not lie behind the side by more than this cosine.
+const BEHIND: f32 = -0.35;
+/// Crease points see each other if neither lies behind the other by more than this cosine.
+const CREASE_BEHIND: f32 = -0.3;
+/// Segments can separate two points if their middle is within this share of the points' distance, and half of the longest
+/// segment, from the middle of the points.
+const AROUND: f32 = 0.75;
+
+/// The curves of a level, ready for queries.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curves {
+    /// Records and segments.
+    pub features: Features,
+    /// The record of each point of the level, or [`NONE`].
+    pub record_of: Vec<u32>,
+    /// Segments by the cell of their middle.
+    grid: Grid,
+    /// Half of the longest segment.
+    reach: f32,
+}
+
+/// A point of the level or a new one, as others see it.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// Position.
+    pub position: Vec3,
+    /// Unit normal.
+    pub normal: Vec3,
+    /// Its record, or [`NONE`].
+    pub record: u32,
+}
+
+impl Curves {
+    /// The curves of a level of so many points.
+    pub fn new(features: Features, points: usize) -> Self {
+        let (grid, reach) = features.segment_grid();
+        let record_of = features.by_point(points);
+        Self { features, record_of, grid, reach }
+    }
+
+    fn record(&self, index: u32) -> &Record {
+        &self.features.records[index as usize]
+    }
+
+    /// The side of a crease point on which another point lies, if any; for a boundary point itself, if the other one lies
+    /// in its fan.
+    fn side(&self, of: u32, other: Seen) -> u32 {
+        let d = other.position - self.record(of).position;
+        let u = d * (1.0 / d.dot(d).sqrt());
+        if self.record(of).is_boundary() {
+            let like = other.normal.dot(self.record(of).normal) > LIKE;
+            return if like && in_wedge(self.record(of), d) { of } else { NONE };
+        }
+        let mut best = (NONE, f32::MIN);
+        for k in self.features.sides_of(of) {
+            let Record { normal, conormal, .. } = self.features.records[k];
+            let score = other.normal.dot(normal) + u.dot(conormal);
+            if score > best.1 {
+                best = (k as u32, score);
+            }
+        }
+        let Record { normal, conormal, .. } = *self.record(best.0);
+        let valid = other.normal.dot(normal) > LIKE
+            && u.dot(normal).abs() < STEEP
+            && u.dot(conormal) > BEHIND;
+        if valid { best.0 } else { NONE }
+    }
+
+    /// Whether records of two points see each other. Those next to each other on a curve do on their own side only.
+    fn records_see(&self, a: Seen, b: Seen) -> bool {
+        let (r, q) = (*self.record(a.record), *self.record(b.record));
+        if r.first == q.first {
+            return false;
+        }
+        let joined = |from: u32, to: &Record| {
+            let first = |&p: &u32| p != NONE && self.record(p).first == to.first;
+            self.features
+                .sides_of(from)
+                .any(|k| self.features.records[k].partners.iter().any(first))
+        };
+        if joined(a.record, &q) || joined(b.record, &r) {
+            return r.partners.contains(&b.record) || q.partners.contains(&a.record);
+        }
+        let d = q.position - r.position;
+        let u = d * (1.0 / d.dot(d).sqrt());
+        self.side(a.record, b) == a.record
+            && self.side(b.record, a) == b.record
+            && (r.is_boundary() || u.dot(r.conormal) > CREASE_BEHIND)
+            && (q.is_boundary() || -u.dot(q.conormal) > CREASE_BEHIND)
+    }
+
+    /// Whether a crease segment runs between two points: they lie on different sides of it at an end, and the shortest way
+    /// between them over the unfolded sides crosses it.
+    fn separates(&self, segment: u32, a: Seen, b: Seen) -> bool {
+        let sides = self.features.segments[segment as usize].sides;
+        if sides[1][0] == NONE {
+            return false;
+        }
+        let ends = sides[0].map(|r| self.record(r));
+        let touches = |x: Seen| {
+            x.record != NONE
+                && (self.record(x.record).segment == segment
+                    || ends.iter().any(|end| end.first == self.record(x.record).first))
+        };
+        if touches(a) || touches(b) || !crosses(ends.map(|end| end.position), a, b) {
+            return false;
+        }
+        (0..2).any(|end| {
+            // At a corner either may lie on a third side: this end can't tell then.
+            let own = [sides[0][end], sides[1][end]];
+            let (side_a, side_b) = (self.side(own[0], a), self.side(own[0], b));
+            side_a != side_b && own.contains(&side_a) && own.contains(&side_b)
+        })
+    }
+}
+
+/// Whether the straight way between two points over the unfolded sides of a segment meets it.
+fn crosses([from, to]: [Vec3; 2], a: Seen, b: Seen) -> bool {
+    let v = to - from;
+    let inverse = 1.0 / v.dot(v);
+    let place = |x: Seen| {
+        let d = x.position - from;
+        let t = d.dot(v) * inverse;
+        let off = d - v * t;
+        (t, off.dot(off).sqrt())
+    };
+    let ((ta, ha), (tb, hb)) = (place(a), place(b));
+    let crossing = ta * hb + tb * ha;
+    crossing >= 0.0 && crossing <= ha + hb
+}
+
+/// Whether a direction lies between the curves that bound a record's sheet, or a little beyond.
+pub fn in_wedge(record: &Record, d: Vec3) -> bool {
+    let (e1, e2) = record.frame();
+    let angle = direction_angle(d.dot(e2), d.dot(e1));
+    angle >= record.wedge[0] && angle <= record.wedge[1]
+}
+
+/// What one point sees.
+pub(crate) struct View<'a> {
+    curves: Option<&'a Curves>,
+    center: Seen,
+    /// Segments that may separate it from points within its reach.
+    fences: Vec<u32>,
+    /// Within this distance.
+    radius: f32,
+}
+
+impl<'a> View<'a> {
+    /// The view of a point of the level, as far as the radius.
+    pub(crate) fn new(level: &'a Level, p: usize, radius: f32) -> Self {
+        let center = level.seen(p);
+        let mut fences = Vec::new();
+        if let Some(curves) = &level.curves {
+            curves.grid.visit_ball(center.position, (AROUND + 0.5) * radius + curves.reach, |s| {
+                fences.push(s)
+            });
+        }
+        Self { curves: level.curves.as_ref(), center, fences, radius }
+    }
+
+    /// Whether it sees a point within the radius.
+    pub(crate) fn sees(&self, other: Seen) -> bool {
+        let Some(curves) = self.curves else { return true };
+        let d = other.position - self.center.position;
+        let d2 = d.dot(d);
+        // In the same place there is nothing between.
+        if !is_apart(d2, self.radius) {
+            return self.center.record == NONE || other.record == NONE;
+        }
+        let sides_agree = match (self.center.record, other.record) {
+            (NONE, NONE) => true,
+            (r, NONE) => in_wedge(curves.record(r), d) && curves.side(r, other) == r,
+            (NONE, r) => curves.side(r, self.center) == r,
+            (r, _) => in_wedge(curves.record(r), d) && curves.records_see(self.center, other),
+        };
+        sides_agree && !self.is_fenced(curves, other, d, d2)
+    }
+
+    fn is_fenced(&self, curves: &Curves, other: Seen, d: Vec3, d2: f32) -> bool {
+        let middle = self.center.position + d * 0.5;
+        let reach = AROUND * d2.sqrt() + curves.reach;
+        self.fences.iter().any(|&s| {
+            let ends = curves.features.segments[s as usize].sides[0];
+            let [a, b] = ends.map(|r| curves.record(r).position);
+            let off = (a + b) * 0.5 - middle;
+            off.dot(off) <= reach * reach && curves.separates(s, self.center, other)
+        })
+    }
+}

@@ -1,0 +1,43 @@
+// Segments of creases and boundaries, and a walk over those near a place. Twin: `Curves` in crates/reference/src/visible.rs
+//
+// Expects what curves.wgsl has.
+
+/// The records at the two ends of a segment, on one of its sides.
+fn segment_side(segment: u32, side: u32) -> vec2<u32> {
+    let at = curves[9] + SEGMENT_WORDS * segment + 2u * side;
+    return vec2(curves[at], curves[at + 1u]);
+}
+
+/// Half of the longest segment.
+fn longest_half() -> f32 {
+    return bitcast<f32>(curves[8]);
+}
+
+fn segment_cell(x: vec3<f32>) -> vec3<i32> {
+    return vec3<i32>(floor((x - curve_vector(0u)) * bitcast<f32>(curves[3])));
+}
+
+fn segment_bits() -> vec3<u32> {
+    return vec3(curves[4], curves[5], curves[6]);
+}
+
+/// As ball_walk.
+fn segment_walk(center: vec3<f32>, radius: f32) -> BallWalk {
+    let reach = vec3(radius * SLACK + bitcast<f32>(curves[7]) * 1e-4);
+    return walk_between(segment_cell(center - reach), segment_cell(center + reach), segment_bits());
+}
+
+/// The next segment of a walk, or NONE.
+fn next_segment(walk: ptr<function, BallWalk>) -> u32 {
+    while (*walk).item == (*walk).end {
+        if (*walk).run == (*walk).runs {
+            return NONE;
+        }
+        let cells = next_run(walk, segment_bits());
+        (*walk).item = curves[curves[10] + cells.x];
+        (*walk).end = curves[curves[10] + cells.y];
+    }
+    let segment = curves[curves[11] + (*walk).item];
+    (*walk).item += 1u;
+    return segment;
+}

@@ -1,0 +1,182 @@
+// What a point sees when there are creases and boundaries (section 6). Twin: crates/reference/src/visible.rs
+//
+// Expects what curves.wgsl has.
+
+/// A point belongs to a side only if their normals differ by less than this cosine says,
+const LIKE: f32 = 0.3;
+/// the sine of its elevation over the side's tangent plane is below this,
+const STEEP_SIDE: f32 = 0.75;
+/// and it does not lie behind the side by more than this cosine.
+const BEHIND: f32 = -0.35;
+/// Crease points see each other if neither lies behind the other by more than this cosine.
+const CREASE_BEHIND: f32 = -0.3;
+/// Segments can separate two points if their middle is within this share of the points' distance, and half of the longest
+/// segment, from the middle of the points.
+const AROUND: f32 = 0.75;
+
+/// A point of the level or a new one, as others see it. Its record is NONE off the curves.
+struct Seen {
+    position: vec3<f32>,
+    normal: vec3<f32>,
+    record: u32,
+}
+
+/// Whether there may be curves within a radius around a point.
+fn is_near_curves(position: vec3<f32>, radius: f32) -> bool {
+    if !with_curves {
+        return false;
+    }
+    var walk = segment_walk(position, (AROUND + 0.5) * radius + longest_half());
+    return next_segment(&walk) != NONE;
+}
+
+/// Whether a point sees another one within its radius. `near_curves` as above.
+fn sees(center: Seen, near_curves: bool, radius: f32, other: Seen) -> bool {
+    if !with_curves {
+        return true;
+    }
+    let d = other.position - center.position;
+    let d2 = dot3(d, d);
+    // In the same place there is nothing between.
+    if !is_apart(d2, radius) {
+        return center.record == NONE || other.record == NONE;
+    }
+    if center.record != NONE && !in_wedge(center.record, d) {
+        return false;
+    }
+    if center.record != NONE && other.record != NONE {
+        if !records_see(center, other) {
+            return false;
+        }
+    } else if center.record != NONE {
+        if side_of(center.record, other) != center.record {
+            return false;
+        }
+    } else if other.record != NONE && side_of(other.record, center) != other.record {
+        return false;
+    }
+    return !near_curves || !is_fenced(center, other, d, d2);
+}
+
+/// Whether a direction lies between the curves that bound a record's sheet, or a little beyond.
+fn in_wedge(record: u32, d: vec3<f32>) -> bool {
+    let frame = record_frame(record);
+    let angle = direction_angle(dot3(d, frame.e2), dot3(d, frame.e1));
+    let wedge = record_wedge(record);
+    return angle >= wedge.x && angle <= wedge.y;
+}
+
+/// The side of a crease point on which another point lies, or NONE; for a boundary point itself, if the other one lies in
+/// its fan.
+fn side_of(record: u32, other: Seen) -> u32 {
+    let d = other.position - record_position(record);
+    let u = d * (1.0 / sqrt(dot3(d, d)));
+    let first = record_first(record);
+    let sides = record_sides(record);
+    if sides == 1u {
+        let like = dot3(other.normal, record_normal(record)) > LIKE;
+        return select(NONE, record, like && in_wedge(record, d));
+    }
+    var best = first;
+    var highest = 0.0;
+    for (var k = first; k < first + sides; k++) {
+        let score = dot3(other.normal, record_normal(k)) + dot3(u, record_conormal(k));
+        if k == first || score > highest {
+            best = k;
+            highest = score;
+        }
+    }
+    let normal = record_normal(best);
+    let valid = dot3(other.normal, normal) > LIKE && abs(dot3(u, normal)) < STEEP_SIDE
+        && dot3(u, record_conormal(best)) > BEHIND;
+    return select(NONE, best, valid);
+}
+
+/// Whether records of two points see each other. Those next to each other on a curve do on their own side only.
+fn records_see(a: Seen, b: Seen) -> bool {
+    if record_first(a.record) == record_first(b.record) {
+        return false;
+    }
+    if is_joined(a.record, b.record) || is_joined(b.record, a.record) {
+        return any(record_partners(a.record) == vec2(b.record)) || any(record_partners(b.record) == vec2(a.record));
+    }
+    if side_of(a.record, b) != a.record || side_of(b.record, a) != b.record {
+        return false;
+    }
+    let d = record_position(b.record) - record_position(a.record);
+    let u = d * (1.0 / sqrt(dot3(d, d)));
+    return (record_sides(a.record) == 1u || dot3(u, record_conormal(a.record)) > CREASE_BEHIND)
+        && (record_sides(b.record) == 1u || -dot3(u, record_conormal(b.record)) > CREASE_BEHIND);
+}
+
+/// Whether a side of the one's point is next to the other's point on a curve.
+fn is_joined(record: u32, other: u32) -> bool {
+    let first = record_first(record);
+    for (var k = first; k < first + record_sides(record); k++) {
+        let partners = record_partners(k);
+        if (partners.x != NONE && record_first(partners.x) == record_first(other))
+            || (partners.y != NONE && record_first(partners.y) == record_first(other)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+fn is_fenced(center: Seen, other: Seen, d: vec3<f32>, d2: f32) -> bool {
+    let middle = center.position + d * 0.5;
+    let reach = AROUND * sqrt(d2) + longest_half();
+    var walk = segment_walk(middle, reach);
+    for (var s = next_segment(&walk); s != NONE; s = next_segment(&walk)) {
+        let ends = segment_side(s, 0u);
+        let off = (record_position(ends.x) + record_position(ends.y)) * 0.5 - middle;
+        if dot3(off, off) <= reach * reach && separates(s, center, other) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Whether a crease segment runs between two points: they lie on different sides of it at an end, and the shortest way
+/// between them over the unfolded sides crosses it.
+fn separates(segment: u32, a: Seen, b: Seen) -> bool {
+    let one = segment_side(segment, 0u);
+    let two = segment_side(segment, 1u);
+    if two.x == NONE || touches(segment, one, a.record) || touches(segment, one, b.record) || !crosses(one, a, b) {
+        return false;
+    }
+    return parts(one.x, two.x, a, b) || parts(one.y, two.y, a, b);
+}
+
+fn touches(segment: u32, ends: vec2<u32>, record: u32) -> bool {
+    if record == NONE {
+        return false;
+    }
+    let first = record_first(record);
+    return record_segment(record) == segment || record_first(ends.x) == first || record_first(ends.y) == first;
+}
+
+/// Whether two points lie on the two sides of a segment, seen from an end. At a corner either may lie on a third one: that
+/// end can't tell then.
+fn parts(one: u32, two: u32, a: Seen, b: Seen) -> bool {
+    let side_a = side_of(one, a);
+    let side_b = side_of(one, b);
+    return side_a != side_b && (side_a == one || side_a == two) && (side_b == one || side_b == two);
+}
+
+/// Whether the straight way between two points over the unfolded sides of a segment meets it.
+fn crosses(ends: vec2<u32>, a: Seen, b: Seen) -> bool {
+    let start = record_position(ends.x);
+    let v = record_position(ends.y) - start;
+    let inverse = 1.0 / dot3(v, v);
+    let at_a = place_along(a.position - start, v, inverse);
+    let at_b = place_along(b.position - start, v, inverse);
+    let crossing = at_a.x * at_b.y + at_b.x * at_a.y;
+    return crossing >= 0.0 && crossing <= at_a.y + at_b.y;
+}
+
+/// Share of the way along v, and distance from it.
+fn place_along(d: vec3<f32>, v: vec3<f32>, inverse: f32) -> vec2<f32> {
+    let t = dot3(d, v) * inverse;
+    let off = d - v * t;
+    return vec2(t, sqrt(dot3(off, off)));
+}
