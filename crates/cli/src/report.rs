@@ -6,7 +6,7 @@ use serde::{Serialize, Serializer};
 use std::fmt::{self, Display, Formatter};
 use std::path::Path;
 use std::time::Duration;
-use surfine::{LevelReport, Mode, Neighborhood, PointSet, RefineParams};
+use surfine::{Boundary, CurveCounts, LevelReport, Mode, Neighborhood, PointSet, RefineParams};
 use surfine_points::ply::Source;
 
 /// How long the steps took.
@@ -35,6 +35,7 @@ pub(crate) struct Report {
     /// Bytes of the engine's buffers when the last level ended.
     device_bytes: Option<u64>,
     params: Params,
+    curves: Curves,
     levels: Vec<Level>,
     seconds: Seconds,
     /// New points for each second of refinement, without setup and files.
@@ -54,8 +55,22 @@ struct Params {
     theta_c_degrees: f64,
     lambda1: f32,
     lambda2: f32,
+    /// θ_b, where boundaries are found by it.
+    boundary_angle_degrees: Option<f64>,
+    /// The property that marks the boundary.
+    boundary_property: Option<String>,
     /// Rules beyond the paper that were followed.
     rules: Vec<&'static str>,
+}
+
+/// Creases and boundaries of the input.
+#[derive(Serialize)]
+struct Curves {
+    crease_points: usize,
+    corners: usize,
+    crease_segments: usize,
+    boundary_points: usize,
+    boundary_segments: usize,
 }
 
 #[derive(Serialize)]
@@ -106,6 +121,7 @@ impl Report {
             threads,
             device_bytes: refined.device_bytes,
             params: Params::new(&args.params()),
+            curves: Curves::new(refined.curves),
             levels: refined.reports.iter().map(Level::new).collect(),
             points_per_second: per_second(refined.parents.len(), times.refine),
             seconds: Seconds::new(&times),
@@ -139,8 +155,43 @@ impl Params {
             theta_c_degrees: degrees(params.theta_c),
             lambda1: params.lambda1,
             lambda2: params.lambda2,
+            boundary_angle_degrees: match params.boundary {
+                Boundary::Angle(theta_b) => Some(degrees(theta_b)),
+                Boundary::None | Boundary::Marked(_) => None,
+            },
+            boundary_property: params.boundary.property().map(str::to_owned),
             rules: params.rules.named().into_iter().filter(|r| r.1).map(|r| r.0).collect(),
         }
+    }
+}
+
+impl Curves {
+    fn new(counts: CurveCounts) -> Self {
+        let CurveCounts {
+            crease_points,
+            corners,
+            crease_segments,
+            boundary_points,
+            boundary_segments,
+        } = counts;
+        Self { crease_points, corners, crease_segments, boundary_points, boundary_segments }
+    }
+}
+
+impl Display for Curves {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        if self.crease_segments > 0 {
+            let points = counted(self.crease_points, "crease point", "crease points");
+            let corners = counted(self.corners, "corner", "corners");
+            let segments = counted(self.crease_segments, "segment", "segments");
+            writeln!(f, "creases  {points}, {corners}, {segments}")?;
+        }
+        if self.boundary_segments > 0 {
+            let points = counted(self.boundary_points, "boundary point", "boundary points");
+            let segments = counted(self.boundary_segments, "segment", "segments");
+            writeln!(f, "borders  {points}, {segments}")?;
+        }
+        Ok(())
     }
 }
 
@@ -224,6 +275,7 @@ impl Display for Report {
             (Some(adapter), _) => writeln!(f, "backend  gpu, {adapter}, mode {}", self.mode)?,
             (None, threads) => writeln!(f, "backend  cpu, threads: {}", threads.unwrap_or(1))?,
         }
+        write!(f, "{}", self.curves)?;
         for (number, level) in (1..).zip(&self.levels) {
             write!(f, "level {number}  {level}")?;
         }

@@ -5,9 +5,11 @@ use crate::{Error, Gpu};
 use surfine_features::{CurvePoint, Features, Record};
 use surfine_points::Vec3;
 
-/// Words of the header, of a record and of a segment.
+/// Words of the header.
 pub const HEADER_WORDS: usize = 12;
+/// Words of a record.
 pub const RECORD_WORDS: usize = 24;
+/// Words of a segment.
 pub const SEGMENT_WORDS: usize = 4;
 
 /// The table: a header, the records (those of new points last), the segments, and these by cell.

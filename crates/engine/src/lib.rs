@@ -33,8 +33,8 @@ pub use gpu::{Gpu, Mode, adapters, choose_adapter};
 pub use kernel::{Kernel, WORKGROUP_SIZE, exact_spirv};
 pub use refiner::{GpuRefined, Refiner};
 pub use surfine_points::{
-    Attribute, Boundary, LevelReport, Neighborhood, PointSet, Progress, RefineParams, Refined,
-    Rules, Vec3,
+    Attribute, Boundary, CurveCounts, LevelReport, Neighborhood, PointSet, Progress, RefineParams,
+    Refined, Rules, Vec3,
 };
 pub use wgpu;
 

@@ -2,7 +2,6 @@
 
 use crate::buffers::{self, Buffer};
 use crate::commands::Uniforms;
-use crate::curves;
 use crate::records::{Counters, LEVEL_BITS, Params, Point};
 use crate::scan::Scan;
 use crate::stages::{Buffers, Constants, Kernels, Sizing, Step, constants};
@@ -10,7 +9,8 @@ use crate::{Error, Gpu, choose_adapter};
 use std::time::{Duration, Instant};
 use surfine_features::{Cloud, Features, Folded, Records, Refinement, fold, may_be_boundary};
 use surfine_points::{
-    Boundary, Grid, GridShape, LevelReport, PointSet, Progress, RefineParams, Refined, Vec3,
+    Boundary, CurveCounts, Grid, GridShape, LevelReport, PointSet, Progress, RefineParams, Refined,
+    Vec3,
 };
 
 /// A device with compiled kernels and buffers, ready to refine one cloud after the other.
@@ -39,6 +39,8 @@ pub struct GpuRefined {
     pub level_sizes: Vec<usize>,
     /// What happened at each refinement step.
     pub reports: Vec<LevelReport>,
+    /// Creases and boundaries of the input.
+    pub curves: CurveCounts,
     /// Bytes of the refiner's buffers when the last step ended, the result included.
     pub device_bytes: u64,
     /// The input with one record for each normal.
@@ -177,6 +179,7 @@ impl Refiner {
         let mut shape = GridShape::fit(positions, radii);
         let mut level_sizes = vec![records.len()];
         let mut reports = Vec::new();
+        let mut curves = CurveCounts::default();
         for level in 1..=params.levels {
             let count = level_sizes[level_sizes.len() - 1];
             let at = Progress { level, levels: params.levels, stage: "", points: count };
@@ -188,8 +191,11 @@ impl Refiner {
                 let input = (&shape, points, &records);
                 rings = self.find_boundary(params, step, input, &mut features, &mut clock)?;
             }
+            if level == 1 {
+                curves = features.counts();
+            }
             let new = if Features::splits_at(level) { features.split() } else { Vec::new() };
-            curves::upload(&self.gpu, &mut self.buffers.curves, &features, &new)?;
+            crate::curves::upload(&self.gpu, &mut self.buffers.curves, &features, &new)?;
             let input = (level == 1).then_some((&shape, &records));
             let on_curves = OnCurves { records: features.old as u32, new: new.len() as u32 };
             let earlier = count - records.len();
@@ -206,7 +212,16 @@ impl Refiner {
         let device_bytes = self.buffers.size();
         let (points, parents) =
             (self.buffers.points.take(&self.gpu)?, self.buffers.parents.take(&self.gpu)?);
-        Ok(GpuRefined { points, parents, level_sizes, reports, device_bytes, records, features })
+        Ok(GpuRefined {
+            points,
+            parents,
+            level_sizes,
+            reports,
+            curves,
+            device_bytes,
+            records,
+            features,
+        })
     }
 
     fn step(
@@ -234,7 +249,7 @@ impl Refiner {
         features: &mut Features,
         clock: &mut Clock<'_>,
     ) -> Result<Option<Rings>, Error> {
-        curves::upload(&self.gpu, &mut self.buffers.curves, features, &[])?;
+        crate::curves::upload(&self.gpu, &mut self.buffers.curves, features, &[])?;
         let on_curves = OnCurves { records: features.old as u32, new: 0 };
         let mut step = self.step(refine, params, on_curves)?;
         clock.start("grid");
@@ -337,7 +352,8 @@ impl Refiner {
         let bytes = (result.len() * size_of::<Point>()) as u64;
         let points = buffers::read(&self.gpu, &result.points, bytes)?;
         let points: Vec<Point> = bytemuck::pod_collect_to_vec(&points);
-        let GpuRefined { level_sizes, reports, device_bytes, records, features, .. } = result;
+        let GpuRefined { level_sizes, reports, curves, device_bytes, records, features, .. } =
+            result;
         let new = &points[records.len()..];
         let parents = buffers::read(&self.gpu, &result.parents, 12 * new.len() as u64)?;
         let refinement = Refinement {
@@ -350,7 +366,7 @@ impl Refiner {
         let folded = fold(input, &records, &features, &refinement, params.boundary.property());
         let Folded { points, parents, level_sizes } = folded;
         let device_bytes = Some(device_bytes);
-        Ok(Refined { points, parents, level_sizes, reports, device_bytes })
+        Ok(Refined { points, parents, level_sizes, reports, curves, device_bytes })
     }
 }
 

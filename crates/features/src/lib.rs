@@ -23,7 +23,7 @@ pub use records::Records;
 
 use glam::Vec3;
 use surfine_points::math::tangent_frame;
-use surfine_points::{Grid, GridShape};
+use surfine_points::{CurveCounts, Grid, GridShape};
 
 /// No record, no point: the largest index.
 pub const NONE: u32 = u32::MAX;
@@ -131,6 +131,24 @@ impl Features {
     /// boundaries (section 6).
     pub fn splits_at(step: u32) -> bool {
         step.is_multiple_of(2)
+    }
+
+    /// How many there are on the level.
+    pub fn counts(&self) -> CurveCounts {
+        let records = &self.records[..self.old];
+        // Each point once: by the first of its records.
+        let points = |fits: fn(u32) -> bool| {
+            let first = |(i, r): &(usize, &Record)| *i == r.first as usize && fits(r.sides);
+            records.iter().enumerate().filter(first).count()
+        };
+        let boundary_segments = self.segments.iter().filter(|s| s.is_boundary()).count();
+        CurveCounts {
+            crease_points: points(|sides| sides == 2),
+            corners: points(|sides| sides > 2),
+            crease_segments: self.segments.len() - boundary_segments,
+            boundary_points: points(|sides| sides == 1),
+            boundary_segments,
+        }
     }
 
     /// The record of each point of the level, [`NONE`] for smooth points.

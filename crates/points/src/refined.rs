@@ -14,8 +14,25 @@ pub struct Refined {
     pub level_sizes: Vec<usize>,
     /// What happened at each refinement step.
     pub reports: Vec<LevelReport>,
+    /// Creases and boundaries of the input.
+    pub curves: CurveCounts,
     /// Bytes of the refiner's device buffers when the last step ended; `None` where no device was used.
     pub device_bytes: Option<u64>,
+}
+
+/// Creases and boundaries of a cloud (section 6).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CurveCounts {
+    /// Points with two sides.
+    pub crease_points: usize,
+    /// Points with three sides or more.
+    pub corners: usize,
+    /// Pieces of creases between two of these.
+    pub crease_segments: usize,
+    /// Points on boundaries.
+    pub boundary_points: usize,
+    /// Pieces of boundaries between two of these.
+    pub boundary_segments: usize,
 }
 
 /// Measures of one refinement step.

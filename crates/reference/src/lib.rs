@@ -4,6 +4,7 @@
 //! bytes. So it computes in f32, in the order of operations of the kernels, even where Rust would rather do otherwise.
 //! `docs/algorithm.md` gives the reading of the paper and what was measured for each stage.
 
+pub mod boundary;
 pub mod candidates;
 pub mod coloring;
 pub mod commit;

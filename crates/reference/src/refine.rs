@@ -1,5 +1,6 @@
 //! The loop over levels (section 2).
 
+use crate::boundary::boundary;
 use crate::candidates::{Candidates, candidates};
 use crate::coloring::{Classes, coloring};
 use crate::commit::commit;
@@ -9,8 +10,8 @@ use crate::neighborhood::{Rings, neighborhood};
 use crate::next_ring::{Covers, next_ring};
 use crate::{Level, NO_POINT};
 use std::fmt;
-use std::time::Instant;
-use surfine_features::{Gap, Records, Refinement, fold, may_be_boundary};
+use std::time::{Duration, Instant};
+use surfine_features::{Records, Refinement, fold};
 use surfine_points::{
     Boundary, Grid, GridShape, Invalid, LevelReport, ParamError, PointSet, Progress, RefineParams,
     Refined,
@@ -75,25 +76,29 @@ pub fn refine_with(
     points.validate()?;
     let records = Records::split(points)?;
     let mut level = Level::new(&records);
-    let begin = Instant::now();
-    let mut ready = find_boundary(&mut level, points, params);
-    let mut boundary = (params.boundary != Boundary::None).then(|| begin.elapsed());
     let mut result = Refined { level_sizes: vec![level.len()], ..Refined::default() };
     for step in 1..=params.levels {
-        let points = level.len();
-        if points > LARGEST_LEVEL {
-            return Err(Invalid::TooMany(points).into());
+        let size = level.len();
+        if size > LARGEST_LEVEL {
+            return Err(Invalid::TooMany(size).into());
+        }
+        let mut tell = |stage| {
+            progress(Progress { level: step, levels: params.levels, stage, points: size });
+        };
+        let mut clock = Clock { start: &mut tell, times: Vec::new() };
+        let mut sight = Sight::of(&level, params, &mut clock);
+        let searches = step == 1 && params.boundary != Boundary::None;
+        if searches && clock.time("boundary", || boundary(&mut level, &sight.rings, points, params))
+        {
+            sight = Sight::of(&level, params, &mut clock);
+        }
+        if let (1, Some(curves)) = (step, &level.curves) {
+            result.curves = curves.features.counts();
         }
         level.begin_step();
-        let (state, mut report) = run_stages(&level, ready.take(), params, order, &mut |stage| {
-            progress(Progress { level: step, levels: params.levels, stage, points });
-        });
-        if let Some(time) = boundary.take() {
-            report.stages.insert(0, ("boundary", time));
-        }
-        let begin = Instant::now();
-        let parents = commit(&mut level, &state, params);
-        report.stages.push(("commit", begin.elapsed()));
+        let (state, mut report) = run_stages(&level, sight, params, order, &mut clock);
+        let parents = clock.time("commit", || commit(&mut level, &state, params));
+        report.stages = clock.times;
         report.points_out = level.len();
         result.parents.extend(parents);
         result.level_sizes.push(level.len());
@@ -115,26 +120,40 @@ pub fn refine_with(
     Ok(result)
 }
 
-/// Finds the boundaries of the input (section 6). The grid and the rings that show that there are none serve the first step.
-fn find_boundary(level: &mut Level, points: &PointSet, params: &RefineParams) -> Option<Ready> {
-    if params.boundary == Boundary::None || params.levels == 0 {
-        return None;
-    }
-    let grid = point_grid(level);
-    let rings = neighborhood(level, &grid, params);
-    let ring = |p: usize| rings.ring(p).iter().map(|entry| (entry.id, entry.angle));
-    let gaps = (0..level.len()).filter_map(|p| Gap::widest(p as u32, ring(p)));
-    let gaps: Vec<Gap> = gaps.filter(|gap| may_be_boundary(points, params, gap)).collect();
-    let mut features = level.curves.take().map(|curves| curves.features).unwrap_or_default();
-    let before = features.records.len();
-    features.add_boundary(level.cloud(), &gaps);
-    let is_closed = features.records.len() == before;
-    level.set_features(features);
-    is_closed.then_some((grid, rings))
+/// Times the stages and tells the caller where the run stands.
+struct Clock<'a> {
+    start: &'a mut dyn FnMut(&'static str),
+    times: Vec<(&'static str, Duration)>,
 }
 
-/// A grid and rings that need not be computed again.
-type Ready = (Grid, Rings);
+impl Clock<'_> {
+    fn time<T>(&mut self, stage: &'static str, work: impl FnOnce() -> T) -> T {
+        (self.start)(stage);
+        let begin = Instant::now();
+        let result = work();
+        let time = begin.elapsed();
+        // Where boundaries are found the rings are made twice.
+        match self.times.iter_mut().find(|(name, _)| *name == stage) {
+            Some((_, sum)) => *sum += time,
+            None => self.times.push((stage, time)),
+        }
+        result
+    }
+}
+
+/// The neighbourhoods of a level.
+struct Sight {
+    grid: Grid,
+    rings: Rings,
+}
+
+impl Sight {
+    fn of(level: &Level, params: &RefineParams, clock: &mut Clock<'_>) -> Self {
+        let grid = clock.time("grid", || point_grid(level));
+        let rings = clock.time("neighborhood", || neighborhood(level, &grid, params));
+        Self { grid, rings }
+    }
+}
 
 /// Everything that one refinement step computes before its commit.
 #[derive(Clone, Debug)]
@@ -157,49 +176,27 @@ pub fn run_level(
     order: Order,
     progress: &mut dyn FnMut(&'static str),
 ) -> (LevelState, LevelReport) {
-    run_stages(level, None, params, order, progress)
+    let mut clock = Clock { start: progress, times: Vec::new() };
+    let sight = Sight::of(level, params, &mut clock);
+    let (state, report) = run_stages(level, sight, params, order, &mut clock);
+    (state, LevelReport { stages: clock.times, ..report })
 }
 
+/// The stages from the candidates on.
 fn run_stages(
     level: &Level,
-    ready: Option<Ready>,
+    Sight { grid, rings }: Sight,
     params: &RefineParams,
     order: Order,
-    progress: &mut dyn FnMut(&'static str),
+    clock: &mut Clock<'_>,
 ) -> (LevelState, LevelReport) {
-    let mut report = LevelReport { points_in: level.len(), ..LevelReport::default() };
-    let mut stage =
-        |name: &'static str, begin: Instant| report.stages.push((name, begin.elapsed()));
-    let mut start = |name| {
-        progress(name);
-        Instant::now()
-    };
-
-    let (grid, rings) = ready.unwrap_or_else(|| {
-        let begin = start("grid");
-        let grid = point_grid(level);
-        stage("grid", begin);
-
-        let begin = start("neighborhood");
-        let rings = neighborhood(level, &grid, params);
-        stage("neighborhood", begin);
-        (grid, rings)
+    let candidates = clock.time("candidates", || candidates(level, &rings, params));
+    let (candidate_grid, conflicts) = clock.time("conflicts", || {
+        let candidate_grid = candidate_grid(&grid.shape, &candidates);
+        let conflicts = conflicts(level, &rings, &candidates, &candidate_grid, params);
+        (candidate_grid, conflicts)
     });
-
-    let begin = start("candidates");
-    let candidates = candidates(level, &rings, params);
-    stage("candidates", begin);
-
-    let begin = start("conflicts");
-    let candidate_grid = candidate_grid(&grid.shape, &candidates);
-    let conflicts = conflicts(level, &rings, &candidates, &candidate_grid, params);
-    stage("conflicts", begin);
-
-    let begin = start("coloring");
-    let classes = coloring(&conflicts);
-    stage("coloring", begin);
-
-    let begin = start("insertion");
+    let classes = clock.time("coloring", || coloring(&conflicts));
     let inputs = Stage {
         level,
         rings: &rings,
@@ -207,17 +204,16 @@ fn run_stages(
         candidate_grid: &candidate_grid,
         params,
     };
-    let insertion = insertion(inputs, &classes, order);
-    stage("insertion", begin);
-
-    let begin = start("next_ring");
-    let covers = next_ring(inputs, &insertion);
-    stage("next_ring", begin);
-
-    report.ball_neighbors = rings.ball_neighbors;
-    report.ring_neighbors = rings.len() as u64;
-    report.classes = classes.members.len();
-    report.isolated = (0..level.len()).filter(|&p| rings.ring(p).is_empty()).count();
+    let insertion = clock.time("insertion", || insertion(inputs, &classes, order));
+    let covers = clock.time("next_ring", || next_ring(inputs, &insertion));
+    let report = LevelReport {
+        points_in: level.len(),
+        ball_neighbors: rings.ball_neighbors,
+        ring_neighbors: rings.len() as u64,
+        classes: classes.members.len(),
+        isolated: (0..level.len()).filter(|&p| rings.ring(p).is_empty()).count(),
+        ..LevelReport::default()
+    };
     let state = LevelState {
         grid,
         rings,
