@@ -4,6 +4,8 @@
 
 /// Whether angles between new neighbours are straight instead of curved.
 override plain_angle: bool = false;
+/// A rule beyond the paper: see `Rules` in crates/points/src/params.rs.
+override curve_bounds: bool = true;
 
 /// A gap or an angle must be wider by this factor to be preferred to an earlier one: regular grids tie.
 const HYSTERESIS: f32 = 1.00001;
@@ -75,7 +77,7 @@ fn normal_of(slot: u32) -> vec3<f32> {
 
 /// Where a step keeps the curves, the neighbours of a point along them bound its gaps, though they are not new.
 fn add_bounds() {
-    if ring.record == NONE || params.slots > params.fan_slots {
+    if ring.record == NONE || !curve_bounds || params.slots > params.fan_slots {
         return;
     }
     let partners = record_partners(ring.record);

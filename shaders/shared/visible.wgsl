@@ -2,6 +2,10 @@
 //
 // Expects what curves.wgsl has.
 
+/// Rules beyond the paper: see `Rules` in crates/points/src/params.rs.
+override separating_segments: bool = true;
+override valid_sides: bool = true;
+
 /// A point belongs to a side only if their normals differ by less than this cosine says,
 const LIKE: f32 = 0.3;
 /// the sine of its elevation over the side's tangent plane is below this,
@@ -23,7 +27,7 @@ struct Seen {
 
 /// Whether there may be curves within a radius around a point.
 fn is_near_curves(position: vec3<f32>, radius: f32) -> bool {
-    if !with_curves {
+    if !with_curves || !separating_segments {
         return false;
     }
     var walk = segment_walk(position, (AROUND + 0.5) * radius + longest_half());
@@ -89,7 +93,7 @@ fn side_of(record: u32, other: Seen) -> u32 {
     let normal = record_normal(best);
     let valid = dot3(other.normal, normal) > LIKE && abs(dot3(u, normal)) < STEEP_SIDE
         && dot3(u, record_conormal(best)) > BEHIND;
-    return select(NONE, best, valid);
+    return select(NONE, best, valid || !valid_sides);
 }
 
 /// Whether records of two points see each other. Those next to each other on a curve do on their own side only.

@@ -194,7 +194,11 @@ impl Refiner {
             if level == 1 {
                 curves = features.counts();
             }
-            let new = if Features::splits_at(level) { features.split() } else { Vec::new() };
+            let new = if Features::splits_at(level, params.rules) {
+                features.split()
+            } else {
+                Vec::new()
+            };
             crate::curves::upload(&self.gpu, &mut self.buffers.curves, &features, &new)?;
             let input = (level == 1).then_some((&shape, &records));
             let on_curves = OnCurves { records: features.old as u32, new: new.len() as u32 };

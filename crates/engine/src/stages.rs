@@ -45,7 +45,9 @@ pub fn constants(params: &RefineParams, with_curves: bool) -> Constants {
     let modes =
         [("accurate", accurate), ("simplified", params.simplified), ("plain_angle", plain_angle)];
     let modes = modes.into_iter().chain([("with_curves", with_curves)]);
-    let all = modes.chain(params.rules.named());
+    // The host splits the curves.
+    let rules = params.rules.named().into_iter().filter(|(name, _)| *name != "even_steps");
+    let all = modes.chain(rules);
     all.map(|(name, on)| (name, f64::from(on))).collect()
 }
 

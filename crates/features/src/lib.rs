@@ -23,7 +23,7 @@ pub use records::Records;
 
 use glam::Vec3;
 use surfine_points::math::tangent_frame;
-use surfine_points::{CurveCounts, Grid, GridShape};
+use surfine_points::{CurveCounts, Grid, GridShape, Rules};
 
 /// No record, no point: the largest index.
 pub const NONE: u32 = u32::MAX;
@@ -127,10 +127,10 @@ impl Features {
         first as usize..(first + sides) as usize
     }
 
-    /// Whether step `step` (from 1) splits the segments: every second one does, as Kobbelt's √3 subdivision does at
-    /// boundaries (section 6).
-    pub fn splits_at(step: u32) -> bool {
-        step.is_multiple_of(2)
+    /// Whether a step, from 1, splits the segments: every second one does, as Kobbelt's √3 subdivision does at boundaries
+    /// (section 6). The first one would make the curves denser than the surface beside them.
+    pub fn splits_at(step: u32, rules: Rules) -> bool {
+        step.is_multiple_of(2) == rules.even_steps
     }
 
     /// How many there are on the level.

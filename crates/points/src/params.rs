@@ -65,7 +65,7 @@ pub struct RefineParams {
     pub rules: Rules,
 }
 
-/// Rules that the paper doesn't have, for irregular samples and sheets that lie close to each other. Each is measured in
+/// Rules that the paper doesn't have, for irregular samples, sheets that lie close to each other and creases. Each is measured in
 /// `docs/algorithm.md`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Rules {
@@ -86,6 +86,15 @@ pub struct Rules {
     pub natural_neighbors: bool,
     /// Radii cover the ring that a point has at the next level.
     pub next_ring: bool,
+    /// A crease between two points keeps them from seeing each other.
+    pub separating_segments: bool,
+    /// A point belongs to a side of a crease only if its normal and its place fit.
+    pub valid_sides: bool,
+    /// In steps that keep the creases and boundaries as they are, the neighbours of a point along them bound its new
+    /// neighbourhood.
+    pub curve_bounds: bool,
+    /// Creases and boundaries are split at the second, fourth, ... step instead of the first, third, ...
+    pub even_steps: bool,
 }
 
 impl Rules {
@@ -99,6 +108,10 @@ impl Rules {
         first_radii: true,
         natural_neighbors: true,
         next_ring: true,
+        separating_segments: true,
+        valid_sides: true,
+        curve_bounds: true,
+        even_steps: true,
     };
 
     /// None of them: the paper's text.
@@ -111,10 +124,14 @@ impl Rules {
         first_radii: false,
         natural_neighbors: false,
         next_ring: false,
+        separating_segments: false,
+        valid_sides: false,
+        curve_bounds: false,
+        even_steps: false,
     };
 
-    /// Each rule's name and whether it is on: the names of the kernels' `override`s.
-    pub fn named(&self) -> [(&'static str, bool); 8] {
+    /// Each rule's name and whether it is on: the names of the kernels' `override`s, but for `even_steps`.
+    pub fn named(&self) -> [(&'static str, bool); 12] {
         [
             ("opposite_pairs", self.opposite_pairs),
             ("narrow_cones", self.narrow_cones),
@@ -124,6 +141,10 @@ impl Rules {
             ("first_radii", self.first_radii),
             ("natural_neighbors", self.natural_neighbors),
             ("next_ring", self.next_ring),
+            ("separating_segments", self.separating_segments),
+            ("valid_sides", self.valid_sides),
+            ("curve_bounds", self.curve_bounds),
+            ("even_steps", self.even_steps),
         ]
     }
 
@@ -138,6 +159,10 @@ impl Rules {
             "first_radii" => Some(&mut self.first_radii),
             "natural_neighbors" => Some(&mut self.natural_neighbors),
             "next_ring" => Some(&mut self.next_ring),
+            "separating_segments" => Some(&mut self.separating_segments),
+            "valid_sides" => Some(&mut self.valid_sides),
+            "curve_bounds" => Some(&mut self.curve_bounds),
+            "even_steps" => Some(&mut self.even_steps),
             _ => None,
         }
     }

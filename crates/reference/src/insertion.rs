@@ -202,7 +202,7 @@ impl<'a> Fan<'a> {
         Self {
             stage,
             p,
-            view: View::new(stage.level, p, radius),
+            view: View::new(stage.level, p, radius, stage.params.rules),
             on_curve: stage.level.record(p).is_some(),
             center: stage.level.positions[p],
             normal,
@@ -274,10 +274,14 @@ impl<'a> Fan<'a> {
         }
     }
 
+    fn bounds_gaps(&self) -> bool {
+        self.stage.params.rules.curve_bounds && self.stage.level.keeps_curves()
+    }
+
     /// Where a step keeps the curves, the neighbours of a point along them bound its gaps, though they are not new.
     fn bounds(&self) -> Vec<Member> {
         let level = self.stage.level;
-        let Some(record) = level.record(self.p).filter(|_| level.keeps_curves()) else {
+        let Some(record) = level.record(self.p).filter(|_| self.bounds_gaps()) else {
             return Vec::new();
         };
         let features = level.curves.iter().map(|curves| &curves.features);

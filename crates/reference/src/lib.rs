@@ -23,6 +23,7 @@ pub use refine::{Error, LevelState, candidate_grid, point_grid, refine, refine_w
 use glam::Vec3;
 use pn_triangle::Corner;
 use surfine_features::{Cloud, CurvePoint, Features, Record, Records};
+use surfine_points::Rules;
 use visible::{Curves, Seen};
 
 /// No point: the largest index.
@@ -72,9 +73,9 @@ impl Level {
     }
 
     /// Begins a step: puts new points on the curves if it is one that splits them.
-    pub fn begin_step(&mut self) {
+    pub fn begin_step(&mut self, rules: Rules) {
         if let Some(curves) = &mut self.curves
-            && Features::splits_at(self.step + 1)
+            && Features::splits_at(self.step + 1, rules)
         {
             self.curve_points = curves.features.split();
         }

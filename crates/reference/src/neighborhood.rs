@@ -122,7 +122,7 @@ fn consistent_ball(
     let (center, normal, radius) = (level.positions[p], level.normals[p], level.radii[p]);
     let frame = level.frame(p);
     let inverse = 1.0 / radius;
-    let view = View::new(level, p, radius);
+    let view = View::new(level, p, radius, params.rules);
     let mut size = 0;
     let mut ball = Vec::new();
     grid.visit_ball(center, radius, |id| {

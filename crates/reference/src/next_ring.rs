@@ -48,7 +48,7 @@ fn covers(stage: Stage<'_>, insertion: &Insertion, p: usize) -> Vec<(u32, f32)> 
     let (center, normal) = (level.positions[p], level.normals[p]);
     let radius = insertion.radii[p];
     let mut around = Around::new(stage, p);
-    let view = View::new(level, p, radius);
+    let view = View::new(level, p, radius, stage.params.rules);
     for entry in rings.ring(p) {
         let i = entry.id as usize;
         around.add(entry.id, level.positions[i], level.normals[i]);

@@ -95,7 +95,7 @@ pub fn refine_with(
         if let (1, Some(curves)) = (step, &level.curves) {
             result.curves = curves.features.counts();
         }
-        level.begin_step();
+        level.begin_step(params.rules);
         let (state, mut report) = run_stages(&level, sight, params, order, &mut clock);
         let parents = clock.time("commit", || commit(&mut level, &state, params));
         report.stages = clock.times;

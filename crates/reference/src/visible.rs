@@ -8,7 +8,7 @@ use crate::Level;
 use crate::math::{direction_angle, is_apart};
 use glam::Vec3;
 use surfine_features::{Features, NONE, Record};
-use surfine_points::Grid;
+use surfine_points::{Grid, Rules};
 
 /// A point belongs to a side only if their normals differ by less than this cosine says,
 const LIKE: f32 = 0.3;
@@ -60,7 +60,7 @@ impl Curves {
 
     /// The side of a crease point on which another point lies, if any; for a boundary point itself, if the other one lies
     /// in its fan.
-    fn side(&self, of: u32, other: Seen) -> u32 {
+    fn side(&self, of: u32, other: Seen, rules: Rules) -> u32 {
         let d = other.position - self.record(of).position;
         let u = d * (1.0 / d.dot(d).sqrt());
         if self.record(of).is_boundary() {
@@ -79,11 +79,11 @@ impl Curves {
         let valid = other.normal.dot(normal) > LIKE
             && u.dot(normal).abs() < STEEP
             && u.dot(conormal) > BEHIND;
-        if valid { best.0 } else { NONE }
+        if valid || !rules.valid_sides { best.0 } else { NONE }
     }
 
     /// Whether records of two points see each other. Those next to each other on a curve do on their own side only.
-    fn records_see(&self, a: Seen, b: Seen) -> bool {
+    fn records_see(&self, a: Seen, b: Seen, rules: Rules) -> bool {
         let (r, q) = (*self.record(a.record), *self.record(b.record));
         if r.first == q.first {
             return false;
@@ -99,15 +99,15 @@ impl Curves {
         }
         let d = q.position - r.position;
         let u = d * (1.0 / d.dot(d).sqrt());
-        self.side(a.record, b) == a.record
-            && self.side(b.record, a) == b.record
+        self.side(a.record, b, rules) == a.record
+            && self.side(b.record, a, rules) == b.record
             && (r.is_boundary() || u.dot(r.conormal) > CREASE_BEHIND)
             && (q.is_boundary() || -u.dot(q.conormal) > CREASE_BEHIND)
     }
 
     /// Whether a crease segment runs between two points: they lie on different sides of it at an end, and the shortest way
     /// between them over the unfolded sides crosses it.
-    fn separates(&self, segment: u32, a: Seen, b: Seen) -> bool {
+    fn separates(&self, segment: u32, a: Seen, b: Seen, rules: Rules) -> bool {
         let sides = self.features.segments[segment as usize].sides;
         if sides[1][0] == NONE {
             return false;
@@ -124,7 +124,7 @@ impl Curves {
         (0..2).any(|end| {
             // At a corner either may lie on a third side: this end can't tell then.
             let own = [sides[0][end], sides[1][end]];
-            let (side_a, side_b) = (self.side(own[0], a), self.side(own[0], b));
+            let (side_a, side_b) = (self.side(own[0], a, rules), self.side(own[0], b, rules));
             side_a != side_b && own.contains(&side_a) && own.contains(&side_b)
         })
     }
@@ -160,19 +160,20 @@ pub(crate) struct View<'a> {
     fences: Vec<u32>,
     /// Within this distance.
     radius: f32,
+    rules: Rules,
 }
 
 impl<'a> View<'a> {
     /// The view of a point of the level, as far as the radius.
-    pub(crate) fn new(level: &'a Level, p: usize, radius: f32) -> Self {
+    pub(crate) fn new(level: &'a Level, p: usize, radius: f32, rules: Rules) -> Self {
         let center = level.seen(p);
         let mut fences = Vec::new();
-        if let Some(curves) = &level.curves {
+        if let (Some(curves), true) = (&level.curves, rules.separating_segments) {
             curves.grid.visit_ball(center.position, (AROUND + 0.5) * radius + curves.reach, |s| {
                 fences.push(s)
             });
         }
-        Self { curves: level.curves.as_ref(), center, fences, radius }
+        Self { curves: level.curves.as_ref(), center, fences, radius, rules }
     }
 
     /// Whether it sees a point within the radius.
@@ -186,9 +187,11 @@ impl<'a> View<'a> {
         }
         let sides_agree = match (self.center.record, other.record) {
             (NONE, NONE) => true,
-            (r, NONE) => in_wedge(curves.record(r), d) && curves.side(r, other) == r,
-            (NONE, r) => curves.side(r, self.center) == r,
-            (r, _) => in_wedge(curves.record(r), d) && curves.records_see(self.center, other),
+            (r, NONE) => in_wedge(curves.record(r), d) && curves.side(r, other, self.rules) == r,
+            (NONE, r) => curves.side(r, self.center, self.rules) == r,
+            (r, _) => {
+                in_wedge(curves.record(r), d) && curves.records_see(self.center, other, self.rules)
+            }
         };
         sides_agree && !self.is_fenced(curves, other, d, d2)
     }
@@ -200,7 +203,7 @@ impl<'a> View<'a> {
             let ends = curves.features.segments[s as usize].sides[0];
             let [a, b] = ends.map(|r| curves.record(r).position);
             let off = (a + b) * 0.5 - middle;
-            off.dot(off) <= reach * reach && curves.separates(s, self.center, other)
+            off.dot(off) <= reach * reach && curves.separates(s, self.center, other, self.rules)
         })
     }
 }
