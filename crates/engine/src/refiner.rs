@@ -33,6 +33,8 @@ pub struct GpuRefined {
     pub parents: wgpu::Buffer,
     /// Number of points at each level: entry 0 is the input, the last entry is all of them.
     pub level_sizes: Vec<usize>,
+    /// Radii of the points of each level if `RefineParams::keep_radii` asks for them; else empty.
+    pub level_radii: Vec<Vec<f32>>,
     /// What happened at each refinement step.
     pub reports: Vec<LevelReport>,
     /// Bytes of the refiner's buffers when the last step ended, the result included.
@@ -162,6 +164,8 @@ impl Refiner {
         self.upload(points)?;
         let mut shape = GridShape::fit(&points.positions, &points.radii);
         let mut level_sizes = vec![points.len()];
+        let mut level_radii = Vec::new();
+        level_radii.extend(params.keep_radii.then(|| points.radii.clone()));
         let mut reports = Vec::new();
         for level in 1..=params.levels {
             let count = level_sizes[level_sizes.len() - 1];
@@ -174,6 +178,9 @@ impl Refiner {
             let mut report = self.run_step(params, step, input, earlier, &mut clock)?;
             report.stages = clock.stop();
             level_sizes.push(report.points_out);
+            if params.keep_radii {
+                level_radii.push(self.read_radii(self.buffers.points.raw(), report.points_out)?);
+            }
             // The area stays, so the spacing goes with the root of the number of points, and the grid with it.
             let ratio = (count as f32 / report.points_out.max(1) as f32).sqrt();
             shape = GridShape::with_cell(shape.origin, shape.cell * ratio, report.points_out);
@@ -182,7 +189,7 @@ impl Refiner {
         let device_bytes = self.buffers.size();
         let (points, parents) =
             (self.buffers.points.take(&self.gpu)?, self.buffers.parents.take(&self.gpu)?);
-        Ok(GpuRefined { points, parents, level_sizes, reports, device_bytes })
+        Ok(GpuRefined { points, parents, level_sizes, level_radii, reports, device_bytes })
     }
 
     /// Runs the stages of one refinement step. The grid of the `input` is built here, later levels make theirs.
@@ -248,6 +255,12 @@ impl Refiner {
         self.buffers.counters.reserve(&self.gpu, size_of::<Counters>() as u64)
     }
 
+    fn read_radii(&self, points: &wgpu::Buffer, count: usize) -> Result<Vec<f32>, Error> {
+        let bytes = buffers::read(&self.gpu, points, (count * size_of::<Point>()) as u64)?;
+        let records: Vec<Point> = bytemuck::pod_collect_to_vec(&bytes);
+        Ok(records.iter().map(|p| p.radius).collect())
+    }
+
     fn read_back(&self, input: &PointSet, result: GpuRefined) -> Result<Refined, Error> {
         let bytes = (result.len() * size_of::<Point>()) as u64;
         let points = buffers::read(&self.gpu, &result.points, bytes)?;
@@ -261,9 +274,9 @@ impl Refiner {
         refined.positions.extend(new.iter().map(|p| Vec3::from_array(p.position)));
         refined.normals.extend(new.iter().map(|p| Vec3::from_array(p.normal)));
         refined.extend_attributes(&parents);
-        let GpuRefined { level_sizes, reports, device_bytes, .. } = result;
+        let GpuRefined { level_sizes, level_radii, reports, device_bytes, .. } = result;
         let device_bytes = Some(device_bytes);
-        Ok(Refined { points: refined, parents, level_sizes, reports, device_bytes })
+        Ok(Refined { points: refined, parents, level_sizes, level_radii, reports, device_bytes })
     }
 }
 

@@ -34,6 +34,8 @@ pub struct RefineParams {
     pub lambda2: f32,
     /// Rules beyond the paper. Default all; [`Rules::LITERAL`] is the paper's text.
     pub rules: Rules,
+    /// Whether the radii of every level are kept, see `Refined::level_radii`. Changes no point.
+    pub keep_radii: bool,
 }
 
 /// Rules that the paper doesn't have, for irregular samples and sheets that lie close to each other. Each is measured in
@@ -132,6 +134,7 @@ impl Default for RefineParams {
             lambda1: 0.577_350_26,
             lambda2: 0.5,
             rules: Rules::ALL,
+            keep_radii: false,
         }
     }
 }

@@ -73,6 +73,8 @@ pub fn refine_with(
     points.validate()?;
     let mut level = Level::new(points);
     let mut result = Refined { level_sizes: vec![level.len()], ..Refined::default() };
+    let keep = |level: &Level| params.keep_radii.then(|| level.radii.clone());
+    result.level_radii.extend(keep(&level));
     for step in 1..=params.levels {
         let points = level.len();
         if points > LARGEST_LEVEL {
@@ -87,6 +89,7 @@ pub fn refine_with(
         report.points_out = level.len();
         result.parents.extend(parents);
         result.level_sizes.push(level.len());
+        result.level_radii.extend(keep(&level));
         result.reports.push(report);
     }
     let mut refined = points.clone();
