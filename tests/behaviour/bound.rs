@@ -4,7 +4,7 @@
 //! the three halves `½(b_210 + b_120)`, `½(b_201 + b_102)` and `½(b_021 + b_012)`; tangents have a third of their edge's
 //! length. So the first two are no longer than `½(1/3 + 1 + 1/3) r = 5/6 r`, and the third, for two neighbours at distance
 //! r, than `(cos β/2 + 2/3 sin β/2) r`: half the diagonal and a third of the edge. At unequal distances the triangle
-//! inequality gives 5/6 there where that is more, from β = 160° on, but no triangle comes near. The largest c_β is
+//! inequality gives 5/6 there where that is more, from β = 160° on, but no triangle comes near. The largest `c_β` is
 //! (5 + √13)/9 = .9562.
 //!
 //! It is generous. A tangent never leads away from the other end of its edge, so the first two halves stay below

@@ -180,7 +180,7 @@ impl Seconds {
     fn new(times: &Times, measured: bool) -> Self {
         let &Times { read, setup, refine, write, stats } = times;
         let [read, setup, refine, write] = [read, setup, refine, write].map(|t| t.as_secs_f64());
-        Self { read, setup, refine, write, stats: measured.then(|| stats.as_secs_f64()) }
+        Self { read, setup, refine, write, stats: measured.then_some(stats.as_secs_f64()) }
     }
 
     fn total(&self) -> f64 {
