@@ -154,8 +154,8 @@ mod tests {
         for other in [
             // The other face of a thin plate, obliquely below.
             (Vec3::new(0.5, 0.0, -0.5), Vec3::NEG_Z, 1e-3),
-            // Straight above: in the cone of eq. 6, if not turned away.
-            (Vec3::new(0.0, 0.0, 0.5), Vec3::new(0.6, 0.0, 0.8), 1e-3),
+            // Along the sum of the normals: the axis of the cone of eq. 6.
+            (Vec3::new(0.2, 0.0, 0.6), Vec3::new(0.6, 0.0, 0.8), 1e-3),
             // Another record of the same place.
             (Vec3::ZERO, Vec3::X, 1e-3),
         ] {
