@@ -5,6 +5,7 @@
 //! (`../shared/data/points`); each property that they show is held on a generated shape as well.
 
 mod attributes;
+mod bound;
 mod clouds;
 mod coincident;
 mod convergence;

@@ -23,6 +23,7 @@ fn must_be_identical(name: &str, expected: &Refined, found: &Refined) {
     must(compare(&what("normals"), &flat(&e.normals), &flat(&f.normals), EXACT, 1.0));
     must(compare(&what("radii"), &e.radii, &f.radii, EXACT, 1.0));
     must(compare_equal(&what("levels"), &expected.levels(), &found.levels()));
+    must(compare_equal(&what("radii by level"), &expected.level_radii, &found.level_radii));
     assert_eq!(expected.reports.len(), found.reports.len(), "{name}: reports");
     for (e, f) in expected.reports.iter().zip(&found.reports) {
         assert_eq!(
@@ -87,6 +88,7 @@ fn other_parameters_reach_the_kernels() {
         RefineParams { theta_c: 1.2, ..defaults.clone() },
         RefineParams { lambda1: 0.4, ..defaults.clone() },
         RefineParams { lambda2: 0.8, ..defaults.clone() },
+        RefineParams { keep_radii: true, ..defaults.clone() },
         RefineParams { levels: 0, ..defaults },
     ] {
         check(&mut device, &cloud, &params);

@@ -148,6 +148,9 @@ pub(crate) struct RefineArgs {
     /// Write where each point comes from: properties level, parent0, parent1, parent2
     #[arg(long)]
     pub(crate) provenance: bool,
+    /// Show how radii and co-cone angles fall from level to level; the GPU backend reads each level back for it
+    #[arg(long)]
+    pub(crate) stats: bool,
     /// Number of threads of the CPU backend, 1 to 1024 [default: all cores, or `RAYON_NUM_THREADS`]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
@@ -265,6 +268,7 @@ impl RefineArgs {
             lambda2,
             boundary,
             rules,
+            keep_radii: self.stats,
         }
     }
 }

@@ -13,6 +13,7 @@ mod render;
 mod report;
 mod sample;
 mod scene;
+mod stats;
 mod watch;
 
 use args::{Cli, Command};

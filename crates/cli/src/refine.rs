@@ -7,7 +7,7 @@ use crate::watch::Watch;
 use crate::{Failure, files, print};
 use std::time::{Duration, Instant};
 use surfine_points::ply::{self, PlyError, Provenance, Source};
-use surfine_points::{Interpolation, PointSet, Values};
+use surfine_points::{Convergence, Interpolation, PointSet, Values};
 
 pub(crate) fn run(args: &RefineArgs) -> Result<(), Failure> {
     check_paths(args)?;
@@ -42,8 +42,16 @@ fn refine(args: &RefineArgs, watch: &Watch) -> Result<Report, Failure> {
     watch.step(format!("writing {}", args.output.display()));
     let (write, written) = timed(|| write(args, &computed, &source));
     written?;
-    let times = Times { read, setup: computed.setup, refine: computed.refine, write };
-    Ok(Report::new(args, &points, &source, &computed, times))
+    let (stats, levels) = timed(|| {
+        let shown = args.stats && (args.json || !args.quiet);
+        shown.then(|| {
+            watch.step("measuring the levels".into());
+            Convergence::by_level(&computed.refined)
+        })
+    });
+    let (setup, refine) = (computed.setup, computed.refine);
+    let times = Times { read, setup, refine, write, stats };
+    Ok(Report::new(args, &points, &source, &computed, levels, times))
 }
 
 /// Gives the properties the rules that the user asks for.

@@ -2,11 +2,13 @@
 
 use crate::args::RefineArgs;
 use crate::backend::{Backend, Computed};
+use crate::stats::Stats;
 use serde::{Serialize, Serializer};
 use std::fmt::{self, Display, Formatter};
 use std::path::Path;
 use std::time::Duration;
 use surfine::{Boundary, CurveCounts, LevelReport, Mode, Neighborhood, PointSet, RefineParams};
+use surfine_points::Convergence;
 use surfine_points::ply::Source;
 
 /// How long the steps took.
@@ -15,6 +17,8 @@ pub(crate) struct Times {
     pub(crate) setup: Duration,
     pub(crate) refine: Duration,
     pub(crate) write: Duration,
+    /// Measuring the levels, where that was asked for.
+    pub(crate) stats: Duration,
 }
 
 /// The summary. Its names are the keys of the JSON object.
@@ -37,6 +41,9 @@ pub(crate) struct Report {
     params: Params,
     curves: Curves,
     levels: Vec<Level>,
+    /// With `--stats`, how far each level has converged.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stats: Option<Stats>,
     seconds: Seconds,
     /// New points for each second of refinement, without setup and files.
     points_per_second: f64,
@@ -95,6 +102,8 @@ struct Seconds {
     setup: f64,
     refine: f64,
     write: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stats: Option<f64>,
 }
 
 impl Report {
@@ -103,6 +112,7 @@ impl Report {
         points: &PointSet,
         source: &Source,
         computed: &Computed,
+        convergence: Option<Vec<Convergence>>,
         times: Times,
     ) -> Self {
         let refined = &computed.refined;
@@ -124,7 +134,8 @@ impl Report {
             curves: Curves::new(refined.curves),
             levels: refined.reports.iter().map(Level::new).collect(),
             points_per_second: per_second(refined.parents.len(), times.refine),
-            seconds: Seconds::new(&times),
+            seconds: Seconds::new(&times, convergence.is_some()),
+            stats: convergence.as_deref().map(Stats::new),
             notes: notes(points, source, computed, mode),
         }
     }
@@ -217,14 +228,14 @@ impl Level {
 }
 
 impl Seconds {
-    fn new(times: &Times) -> Self {
-        let &Times { read, setup, refine, write } = times;
+    fn new(times: &Times, measured: bool) -> Self {
+        let &Times { read, setup, refine, write, stats } = times;
         let [read, setup, refine, write] = [read, setup, refine, write].map(|t| t.as_secs_f64());
-        Self { read, setup, refine, write }
+        Self { read, setup, refine, write, stats: measured.then_some(stats.as_secs_f64()) }
     }
 
     fn total(&self) -> f64 {
-        self.read + self.setup + self.refine + self.write
+        self.read + self.setup + self.refine + self.write + self.stats.unwrap_or(0.0)
     }
 }
 
@@ -279,6 +290,7 @@ impl Display for Report {
         for (number, level) in (1..).zip(&self.levels) {
             write!(f, "level {number}  {level}")?;
         }
+        self.stats.iter().try_for_each(|stats| write!(f, "{stats}"))?;
         write!(f, "{}", self.seconds)?;
         let new = self.points_out - self.points_in;
         writeln!(
@@ -310,11 +322,13 @@ impl Display for Level {
 
 impl Display for Seconds {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let Self { read, setup, refine, write } = self;
-        writeln!(
+        let Self { read, setup, refine, write, stats } = self;
+        write!(
             f,
             "time     {:.3} s: read {read:.3}, set up {setup:.3}, refine {refine:.3}, write {write:.3}",
             self.total()
-        )
+        )?;
+        stats.iter().try_for_each(|stats| write!(f, ", stats {stats:.3}"))?;
+        writeln!(f)
     }
 }

@@ -37,6 +37,8 @@ pub struct GpuRefined {
     pub parents: wgpu::Buffer,
     /// Number of points at each level: entry 0 is the input, the last entry is all of them.
     pub level_sizes: Vec<usize>,
+    /// Radii of the points of each level if `RefineParams::keep_radii` asks for them; else empty.
+    pub level_radii: Vec<Vec<f32>>,
     /// What happened at each refinement step.
     pub reports: Vec<LevelReport>,
     /// Creases and boundaries of the input.
@@ -178,6 +180,8 @@ impl Refiner {
         self.upload(&records, &features)?;
         let mut shape = GridShape::fit(positions, radii);
         let mut level_sizes = vec![records.len()];
+        let mut level_radii = Vec::new();
+        level_radii.extend(params.keep_radii.then(|| radii.clone()));
         let mut reports = Vec::new();
         let mut curves = CurveCounts::default();
         for level in 1..=params.levels {
@@ -208,6 +212,9 @@ impl Refiner {
             report.stages = clock.stop();
             level_sizes.push(report.points_out);
             features.commit(report.points_out - new.len());
+            if params.keep_radii {
+                level_radii.push(self.read_radii(self.buffers.points.raw(), report.points_out)?);
+            }
             // The area stays, so the spacing goes with the root of the number of points, and the grid with it.
             let ratio = (count as f32 / report.points_out.max(1) as f32).sqrt();
             shape = GridShape::with_cell(shape.origin, shape.cell * ratio, report.points_out);
@@ -220,6 +227,7 @@ impl Refiner {
             points,
             parents,
             level_sizes,
+            level_radii,
             reports,
             curves,
             device_bytes,
@@ -347,6 +355,12 @@ impl Refiner {
         self.buffers.counters.reserve(&self.gpu, size_of::<Counters>() as u64)
     }
 
+    fn read_radii(&self, points: &wgpu::Buffer, count: usize) -> Result<Vec<f32>, Error> {
+        let bytes = buffers::read(&self.gpu, points, (count * size_of::<Point>()) as u64)?;
+        let points: Vec<Point> = bytemuck::pod_collect_to_vec(&bytes);
+        Ok(points.iter().map(|p| p.radius).collect())
+    }
+
     fn read_back(
         &self,
         input: &PointSet,
@@ -356,8 +370,8 @@ impl Refiner {
         let bytes = (result.len() * size_of::<Point>()) as u64;
         let points = buffers::read(&self.gpu, &result.points, bytes)?;
         let points: Vec<Point> = bytemuck::pod_collect_to_vec(&points);
-        let GpuRefined { level_sizes, reports, curves, device_bytes, records, features, .. } =
-            result;
+        let GpuRefined { level_sizes, level_radii, reports, curves, device_bytes, .. } = result;
+        let (records, features) = (result.records, result.features);
         let new = &points[records.len()..];
         let parents = buffers::read(&self.gpu, &result.parents, 12 * new.len() as u64)?;
         let refinement = Refinement {
@@ -366,11 +380,12 @@ impl Refiner {
             radii: points.iter().map(|p| p.radius).collect(),
             parents: bytemuck::pod_collect_to_vec(&parents),
             level_sizes,
+            level_radii,
         };
         let folded = fold(input, &records, &features, &refinement, params.boundary.property());
-        let Folded { points, parents, level_sizes } = folded;
+        let Folded { points, parents, level_sizes, level_radii } = folded;
         let device_bytes = Some(device_bytes);
-        Ok(Refined { points, parents, level_sizes, reports, curves, device_bytes })
+        Ok(Refined { points, parents, level_sizes, level_radii, reports, curves, device_bytes })
     }
 }
 

@@ -22,6 +22,8 @@ pub struct Refinement {
     pub parents: Vec<[u32; 3]>,
     /// Number of records at each level.
     pub level_sizes: Vec<usize>,
+    /// Radii of the records of each level, if they were kept.
+    pub level_radii: Vec<Vec<f32>>,
 }
 
 /// A refined cloud of points.
@@ -33,6 +35,8 @@ pub struct Folded {
     pub parents: Vec<[u32; 3]>,
     /// Number of points at each level.
     pub level_sizes: Vec<usize>,
+    /// Radii of the points of each level, if they were kept.
+    pub level_radii: Vec<Vec<f32>>,
 }
 
 /// Puts records together to points again, as the input had them: where it gave further normals as properties, new crease
@@ -53,12 +57,7 @@ pub fn fold(
     let mut points = input.clone();
     points.positions.extend(places.kept.iter().map(|&r| refined.positions[new(r)]));
     points.normals.extend(places.kept.iter().map(|&r| refined.normals[new(r)]));
-    // A point has the largest radius of its sides.
-    points.radii = vec![0.0; points.positions.len()];
-    for (record, &radius) in (0u32..).zip(&refined.radii) {
-        let own = &mut points.radii[to_point(record) as usize];
-        *own = own.max(radius);
-    }
+    points.radii = places.fold_radii(&refined.radii);
     points.extend_attributes(&parents);
     let sides = places.sides_of_new(split, features, refined);
     if FURTHER.iter().any(|names| columns(input, names).is_some()) {
@@ -71,12 +70,10 @@ pub fn fold(
         set_column(&mut points, name, first, sides.iter().map(|s| u8::from(s.count == 1)));
     }
     // Records are numbered level by level, so the points are too.
-    let last_point = |size: usize| match size.checked_sub(split.len() + 1) {
-        Some(_) => first + places.kept.partition_point(|&r| (r as usize) < size),
-        None => first,
-    };
-    let level_sizes = refined.level_sizes.iter().map(|&size| last_point(size)).collect();
-    Folded { points, parents, level_sizes }
+    let points_of = |&size: &usize| first + places.kept.partition_point(|&r| (r as usize) < size);
+    let level_sizes = refined.level_sizes.iter().map(points_of).collect();
+    let level_radii = refined.level_radii.iter().map(|radii| places.fold_radii(radii)).collect();
+    Folded { points, parents, level_sizes, level_radii }
 }
 
 /// Which record is which point.
@@ -119,6 +116,17 @@ impl Places {
             }
         }
         Self { point_of, kept, merges }
+    }
+
+    /// Radii of the points of a level from those of its records: a point has the largest of its sides.
+    fn fold_radii(&self, radii: &[f32]) -> Vec<f32> {
+        let places = &self.point_of[..radii.len()];
+        let mut folded = vec![0.0f32; places.iter().max().map_or(0, |&last| last as usize + 1)];
+        for (&place, &radius) in places.iter().zip(radii) {
+            let own = &mut folded[place as usize];
+            *own = own.max(radius);
+        }
+        folded
     }
 
     fn sides_of_new(

@@ -3,6 +3,7 @@
 //! This crate knows files, attributes, the uniform grid and the parameters of the refinement. It knows neither the
 //! algorithm nor a GPU.
 
+mod convergence;
 pub mod files;
 mod grid;
 pub mod math;
@@ -13,6 +14,7 @@ mod point_set;
 mod refined;
 pub mod shapes;
 
+pub use convergence::{Convergence, Spread};
 pub use glam::Vec3;
 pub use glam::{DVec3, UVec3};
 pub use grid::{Grid, GridShape};

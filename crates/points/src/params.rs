@@ -63,6 +63,8 @@ pub struct RefineParams {
     pub boundary: Boundary,
     /// Rules beyond the paper. Default all; [`Rules::LITERAL`] is the paper's text.
     pub rules: Rules,
+    /// Whether the radii of every level are kept, see `Refined::level_radii`. Changes no point.
+    pub keep_radii: bool,
 }
 
 /// Rules that the paper doesn't have, for irregular samples, sheets that lie close to each other and creases. Each is measured in
@@ -187,6 +189,7 @@ impl Default for RefineParams {
             lambda2: 0.5,
             boundary: Boundary::default(),
             rules: Rules::ALL,
+            keep_radii: false,
         }
     }
 }

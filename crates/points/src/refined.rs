@@ -12,6 +12,8 @@ pub struct Refined {
     pub parents: Vec<[u32; 3]>,
     /// Number of points at each level: entry 0 is the input, the last entry is all of them.
     pub level_sizes: Vec<usize>,
+    /// Radii of the points of each level, entry 0 the input's, if `RefineParams::keep_radii` asks for them; else empty.
+    pub level_radii: Vec<Vec<f32>>,
     /// What happened at each refinement step.
     pub reports: Vec<LevelReport>,
     /// Creases and boundaries of the input.

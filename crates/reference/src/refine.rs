@@ -11,7 +11,7 @@ use crate::next_ring::{Covers, next_ring};
 use crate::{Level, NO_POINT};
 use std::fmt;
 use std::time::{Duration, Instant};
-use surfine_features::{Records, Refinement, fold};
+use surfine_features::{Folded, Records, Refinement, fold};
 use surfine_points::{
     Boundary, Grid, GridShape, Invalid, LevelReport, ParamError, PointSet, Progress, RefineParams,
     Refined,
@@ -77,6 +77,8 @@ pub fn refine_with(
     let records = Records::split(points)?;
     let mut level = Level::new(&records);
     let mut result = Refined { level_sizes: vec![level.len()], ..Refined::default() };
+    let keep = |level: &Level| params.keep_radii.then(|| level.radii.clone());
+    result.level_radii.extend(keep(&level));
     for step in 1..=params.levels {
         let size = level.len();
         if size > LARGEST_LEVEL {
@@ -102,6 +104,7 @@ pub fn refine_with(
         report.points_out = level.len();
         result.parents.extend(parents);
         result.level_sizes.push(level.len());
+        result.level_radii.extend(keep(&level));
         result.reports.push(report);
     }
     let new = records.len()..level.len();
@@ -111,13 +114,12 @@ pub fn refine_with(
         radii: level.radii,
         parents: result.parents,
         level_sizes: result.level_sizes,
+        level_radii: result.level_radii,
     };
     let features = level.curves.map(|curves| curves.features).unwrap_or_default();
     let folded = fold(points, &records, &features, &refinement, params.boundary.property());
-    result.points = folded.points;
-    result.parents = folded.parents;
-    result.level_sizes = folded.level_sizes;
-    Ok(result)
+    let Folded { points, parents, level_sizes, level_radii } = folded;
+    Ok(Refined { points, parents, level_sizes, level_radii, ..result })
 }
 
 /// Times the stages and tells the caller where the run stands.

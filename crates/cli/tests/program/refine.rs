@@ -142,6 +142,35 @@ fn json_adds_up() {
 }
 
 #[test]
+fn stats_show_how_levels_converge() {
+    let folder = Folder::with_sample("ellipsoid", "400");
+    assert!(folder.refine_json(&[]).get("stats").is_none());
+    let report = folder.refine_json(&["--levels", "3", "--stats"]);
+    let levels = report["stats"].as_array().unwrap();
+    assert_eq!(levels.len(), 4);
+    assert_eq!(
+        (&levels[0]["points"], &levels[0]["radius_ratio"]["mean"]),
+        (&400.into(), &1.0.into())
+    );
+    assert_eq!(levels[3]["points"], report["points_out"]);
+    for pair in levels.windows(2) {
+        for measure in ["radius", "radius_ratio", "co_cone_degrees"] {
+            for kind in ["median", "mean", "max"] {
+                let value = |level: &Value| level[measure][kind].as_f64().unwrap();
+                assert!(value(&pair[1]) < value(&pair[0]), "{measure} {kind}: {levels:?}");
+            }
+        }
+    }
+    let args =
+        ["refine", "in.ply", "-o", "out.ply", "--backend", "cpu", "--levels", "3", "--stats"];
+    let summary = folder.succeed(&args);
+    let row = summary.lines().find(|line| line.trim_start().starts_with("3 ")).unwrap();
+    let columns: Vec<&str> = row.split_whitespace().collect();
+    let angle = levels[3]["co_cone_degrees"]["median"].as_f64().unwrap();
+    assert_eq!((columns.len(), columns[8]), (11, &*format!("{angle:.3}")), "{summary}");
+}
+
+#[test]
 fn options_reach_the_refinement() {
     let folder = Folder::with_sample("torus", "300");
     folder.refine(&[]);
@@ -566,6 +595,11 @@ fn gpu_gives_the_bytes_of_the_cpu() {
     assert_eq!(report["mode"], chosen[0]["mode"]);
     assert_eq!(report["mode"], "exact", "bytes are equal in exact mode only");
     assert!(folder.bytes("gpu.ply") == folder.bytes("out.ply"), "GPU and CPU differ");
+    // The numbers of `--stats` are equal too, to the last digit.
+    let gpu = folder.succeed(&[&refine[..], &["--backend", "gpu", "--stats"]].concat());
+    let gpu: Value = serde_json::from_str(&gpu).unwrap();
+    let cpu = folder.refine_json(&["--stats"]);
+    assert!(gpu["stats"].is_array() && gpu["stats"] == cpu["stats"], "{gpu}");
 
     let part = "no GPU adapter is named like \"no such thing\"; there are: ";
     fs::remove_file(folder.path("gpu.ply")).unwrap();
