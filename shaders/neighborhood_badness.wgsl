@@ -18,7 +18,7 @@ fn neighborhood_badness(@builtin(global_invocation_id) id: vec3<u32>, @builtin(n
         return;
     }
     let p = arena[i].w;
-    // Removal is simultaneous: only the last word changes, and nobody else reads it.
+    // Removal is simultaneous: only the last word changes, and of it nobody else reads but the bit of doubtful members.
     if p < params.points && is_behind(p, i) {
         arena[i].w = p | REMOVED;
     }
@@ -44,7 +44,8 @@ fn is_behind(p: u32, i: u32) -> bool {
     for (var j = block.x; j < block.x + block.y; j++) {
         // An exactly collinear point counts as successor.
         let succeeds = x * bitcast<f32>(arena[j].z) - y * bitcast<f32>(arena[j].y) >= 0.0;
-        if i != j && is_bad(&badness, own, plane_vector(center, j), succeeds) {
+        let takes_part = i != j && (arena[j].w & DOUBTFUL) == 0u;
+        if takes_part && is_bad(&badness, own, plane_vector(center, j), succeeds) {
             return true;
         }
     }

@@ -7,7 +7,8 @@
 
 @group(0) @binding(2) var<storage, read> points: array<Point>;
 @group(0) @binding(3) var<storage, read> grid: array<u32>;
-/// Members of N^E: index, bits of x and y on the tangent plane, and the point whose neighbourhood it is.
+/// Members of N^E: index, bits of x and y on the tangent plane, and the point whose neighbourhood it is, with the bits
+/// REMOVED and DOUBTFUL if it may lie on another sheet.
 @group(0) @binding(4) var<storage, read_write> arena: array<vec4<u32>>;
 /// First arena entry and number of members of each point.
 @group(0) @binding(5) var<storage, read_write> blocks: array<vec2<u32>>;
@@ -19,11 +20,15 @@ override accurate: bool = true;
 /// Rules beyond the paper: see `Rules` in crates/points/src/params.rs.
 override opposite_pairs: bool = true;
 override narrow_cones: bool = true;
+override natural_neighbors: bool = true;
+override sure_neighbors: bool = true;
 
 /// Cosine of 150°: points whose normals differ more are no neighbours, though eq. 6 lets exactly opposite ones pass.
 const OPPOSITE: f32 = -0.8660254;
 /// Share of the bound of eq. 6 from which pairs are rejected.
 const NARROW: f32 = 0.7;
+/// Share of the bound of eq. 6 from which pairs are doubtful.
+const DOUBTFUL_SHARE: f32 = 0.5;
 
 @compute @workgroup_size(64)
 fn neighborhood_ball(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -89,7 +94,8 @@ fn consistent_ball(p: u32, first: u32) -> u32 {
         let d = points[q].position - center.position;
         let d2 = dot3(d, d);
         let other = Seen(points[q].position, normal, record_of(q));
-        let is_consistent = consistent(d * (1.0 / sqrt(d2)), center.normal, normal)
+        let u = d * (1.0 / sqrt(d2));
+        let is_consistent = consistent(u, center.normal, normal)
             && sees(seen, near_curves, center.radius, other);
         let x = dot3(d, frame.e1);
         let y = dot3(d, frame.e2);
@@ -102,7 +108,8 @@ fn consistent_ball(p: u32, first: u32) -> u32 {
             // The geodesic projection q' (eq. 9).
             scale = (geodesic_distance(d, center.normal, normal) * inverse) / sqrt(q2);
         }
-        arena[first + members] = vec4(q, bitcast<u32>(x * scale), bitcast<u32>(y * scale), p);
+        let flags = select(0u, REMOVED | DOUBTFUL, is_doubtful(u, center.normal, normal));
+        arena[first + members] = vec4(q, bitcast<u32>(x * scale), bitcast<u32>(y * scale), p | flags);
         members += 1u;
     }
     return members;
@@ -115,4 +122,11 @@ fn consistent(u: vec3<f32>, n0: vec3<f32>, n1: vec3<f32>) -> bool {
     // The margin is for flat surfaces, where both sides are rounding.
     let bound = select(1.0 + cosine, NARROW * (1.0 + cosine) + 1e-6, narrow_cones);
     return along <= bound && !(opposite_pairs && cosine < OPPOSITE);
+}
+
+/// Whether a pair that passes is doubtful: a step between two sheets rather than a slope of one.
+fn is_doubtful(u: vec3<f32>, n0: vec3<f32>, n1: vec3<f32>) -> bool {
+    let along = abs(dot3(n0 + n1, u));
+    let beyond = along > DOUBTFUL_SHARE * (1.0 + dot3(n0, n1)) + 1e-6;
+    return sure_neighbors && natural_neighbors && beyond;
 }

@@ -1,4 +1,4 @@
-// neighborhood: takes natural neighbours back that the fuzzy planes removed, in gaps of the ring that are wide open (ours).
+// neighborhood: takes natural neighbours back that were removed, in gaps of the ring that are wide open (ours).
 // Twins: `is_in_open_gap` and `is_natural` in crates/reference/src/neighborhood.rs
 // One invocation per arena entry.
 
@@ -17,8 +17,9 @@ fn neighborhood_natural(@builtin(global_invocation_id) id: vec3<u32>, @builtin(n
         return;
     }
     // Kept members stay, and others see no difference between removed ones and those that come back.
-    let p = arena[i].w ^ REMOVED;
-    if p < params.points {
+    let word = arena[i].w;
+    let p = word & ~(REMOVED | DOUBTFUL);
+    if (word & REMOVED) != 0u && p < params.points {
         if is_in_open_gap(p, i) && is_natural(p, i) {
             arena[i].w = BACK;
         }

@@ -5,6 +5,7 @@
 /// Rules beyond the paper: see `Rules` in crates/points/src/params.rs.
 override sliver_normals: bool = true;
 override steep_faces: bool = true;
+override step_normals: bool = true;
 
 /// Cosine of 110°: a triangle is steep if its normal is farther from that of a corner.
 const STEEP: f32 = -0.34202014;
@@ -54,14 +55,24 @@ fn quadratic_sum(t: Triangle, size: f32) -> vec3<f32> {
     return corners + edges * 0.22222222;
 }
 
-/// The mean of two normals, reflected across the plane that halves their edge; zero where they cancel.
+/// From this share of the bound of eq. 6 on an edge is a step.
+const STEP: f32 = 0.4;
+/// One over the width of the range below it where an edge is both.
+const STEP_BLEND: f32 = 5.0;
+
+/// The mean of two normals, reflected across the plane that halves their edge; the steeper the step of an edge, the less
+/// is reflected. Zero where they cancel.
 fn edge_normal(a: Corner, b: Corner, size: f32) -> vec3<f32> {
     let sum = a.normal + b.normal;
     let u = (b.position - a.position) * (1.0 / size);
     let u2 = dot3(u, u);
     var reflected = sum;
     if u2 > 0.0 {
-        reflected = sum - u * (2.0 * dot3(u, sum) / u2);
+        let along = dot3(u, sum);
+        let step = abs(along) / (sqrt(u2) * (1.0 + dot3(a.normal, b.normal)) + 1e-6);
+        let blend = min(max((STEP - step) * STEP_BLEND, 0.0), 1.0);
+        let share = select(1.0, blend, step_normals);
+        reflected = sum - u * (2.0 * share * along / u2);
     }
     if dot3(reflected, reflected) <= FLAT {
         return vec3(0.0);

@@ -72,6 +72,8 @@ const LEVEL_BITS: u32 = 8u;
 // Last words of arena entries of the neighbourhood: the point whose member it is, with a bit that says that fuzzy planes
 // removed it; or what says that it came back.
 const REMOVED: u32 = 0x80000000u;
+/// Of members that are removed from the start, since they may lie on another sheet.
+const DOUBTFUL: u32 = 0x40000000u;
 const BACK: u32 = 0xfffffffeu;
 
 // States of a candidate slot; from 1 on, one more than the class that inserted it. Classes count from 1 here: new points

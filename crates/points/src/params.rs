@@ -86,6 +86,12 @@ pub struct Rules {
     pub first_radii: bool,
     /// In gaps of a ring from 100° on, members that the fuzzy planes removed come back if they are natural neighbours.
     pub natural_neighbors: bool,
+    /// Pairs from 0.5 of the bound of eq. 6 on are neighbours only in gaps of a ring that would stay open without them. It needs
+    /// `natural_neighbors`.
+    pub sure_neighbors: bool,
+    /// Between points on a step, whose normals both lean the same way along their edge, a normal is interpolated without a
+    /// bend.
+    pub step_normals: bool,
     /// Radii cover the ring that a point has at the next level.
     pub next_ring: bool,
     /// A crease between two points keeps them from seeing each other.
@@ -109,6 +115,8 @@ impl Rules {
         own_side: true,
         first_radii: true,
         natural_neighbors: true,
+        sure_neighbors: true,
+        step_normals: true,
         next_ring: true,
         separating_segments: true,
         valid_sides: true,
@@ -125,6 +133,8 @@ impl Rules {
         own_side: false,
         first_radii: false,
         natural_neighbors: false,
+        sure_neighbors: false,
+        step_normals: false,
         next_ring: false,
         separating_segments: false,
         valid_sides: false,
@@ -133,7 +143,7 @@ impl Rules {
     };
 
     /// Each rule's name and whether it is on: the names of the kernels' `override`s, but for `even_steps`.
-    pub fn named(&self) -> [(&'static str, bool); 12] {
+    pub fn named(&self) -> [(&'static str, bool); 14] {
         [
             ("opposite_pairs", self.opposite_pairs),
             ("narrow_cones", self.narrow_cones),
@@ -142,6 +152,8 @@ impl Rules {
             ("own_side", self.own_side),
             ("first_radii", self.first_radii),
             ("natural_neighbors", self.natural_neighbors),
+            ("sure_neighbors", self.sure_neighbors),
+            ("step_normals", self.step_normals),
             ("next_ring", self.next_ring),
             ("separating_segments", self.separating_segments),
             ("valid_sides", self.valid_sides),
@@ -160,6 +172,8 @@ impl Rules {
             "own_side" => Some(&mut self.own_side),
             "first_radii" => Some(&mut self.first_radii),
             "natural_neighbors" => Some(&mut self.natural_neighbors),
+            "sure_neighbors" => Some(&mut self.sure_neighbors),
+            "step_normals" => Some(&mut self.step_normals),
             "next_ring" => Some(&mut self.next_ring),
             "separating_segments" => Some(&mut self.separating_segments),
             "valid_sides" => Some(&mut self.valid_sides),

@@ -15,6 +15,8 @@ pub const WORST_BADNESS: f32 = 1.001;
 pub const OPPOSITE: f32 = -0.866_025_4;
 /// Share of the bound of eq. 6 from which pairs are rejected.
 pub const NARROW: f32 = 0.7;
+/// Share of the bound of eq. 6 from which pairs are doubtful.
+pub const DOUBTFUL: f32 = 0.5;
 /// A ring gap from 100° on may miss a natural neighbour, radians.
 pub const OPEN_GAP: f32 = 1.745_329_3;
 
@@ -63,6 +65,8 @@ impl Rings {
 /// A member of `N^E` seen from the centre, lengths in units of the centre's radius.
 pub(crate) struct Neighbor {
     pub(crate) id: u32,
+    /// Whether it may lie on another sheet: then it is no neighbour unless a gap stays open.
+    is_doubtful: bool,
     /// The vector whose fuzzy plane is tested: `q'_i - p` (eq. 9) in the tangent frame for the accurate neighbourhood,
     /// `p_i - p` for the fuzzy one.
     offset: Vec3,
@@ -87,10 +91,12 @@ impl Neighbor {
             return None;
         }
         if params.effective_neighborhood() == Neighborhood::Fuzzy {
-            return Some(Self { id, offset: d * inverse, x: x * inverse, y: y * inverse });
+            let (x, y) = (x * inverse, y * inverse);
+            return Some(Self { id, is_doubtful: false, offset: d * inverse, x, y });
         }
         let s = (geodesic_distance(d, normal, other) * inverse) / q2.sqrt();
-        Some(Self { id, offset: Vec3::new(x * s, y * s, 0.0), x: x * s, y: y * s })
+        let (x, y) = (x * s, y * s);
+        Some(Self { id, is_doubtful: false, offset: Vec3::new(x, y, 0.0), x, y })
     }
 }
 
@@ -134,18 +140,19 @@ fn consistent_ball(
         }
         size += 1;
         let other = level.normals[id as usize];
-        let sees =
-            consistent(d, d2, normal, other, params.rules) && view.sees(level.seen(id as usize));
-        if sees {
-            ball.extend(Neighbor::new(id, d, frame, inverse, [normal, other], params));
+        let u = d * (1.0 / d2.sqrt());
+        if consistent(u, normal, other, params.rules) && view.sees(level.seen(id as usize)) {
+            let is_doubtful = is_doubtful(u, normal, other, params.rules);
+            let neighbor = Neighbor::new(id, d, frame, inverse, [normal, other], params);
+            ball.extend(neighbor.map(|n| Neighbor { is_doubtful, ..n }));
         }
     });
     (size, ball)
 }
 
-/// Eq. 6, printed inverted: whether neither point lies in the cone of apex the other and axis `n0 + n1`.
-fn consistent(d: Vec3, d2: f32, n0: Vec3, n1: Vec3, rules: Rules) -> bool {
-    let u = d * (1.0 / d2.sqrt());
+/// Eq. 6, printed inverted: whether neither point lies in the cone of apex the other and axis `n0 + n1`. `u` is the unit
+/// vector between them.
+fn consistent(u: Vec3, n0: Vec3, n1: Vec3, rules: Rules) -> bool {
     let cosine = n0.dot(n1);
     if rules.opposite_pairs && cosine < OPPOSITE {
         return false;
@@ -155,10 +162,17 @@ fn consistent(d: Vec3, d2: f32, n0: Vec3, n1: Vec3, rules: Rules) -> bool {
     if rules.narrow_cones { along <= NARROW * (1.0 + cosine) + 1e-6 } else { along <= 1.0 + cosine }
 }
 
+/// Whether a pair that passes is doubtful: a step between two sheets rather than a slope of one.
+fn is_doubtful(u: Vec3, n0: Vec3, n1: Vec3, rules: Rules) -> bool {
+    let along = (n0 + n1).dot(u).abs();
+    let beyond = along > DOUBTFUL * (1.0 + n0.dot(n1)) + 1e-6;
+    rules.sure_neighbors && rules.natural_neighbors && beyond
+}
+
 /// Removes the members that lie behind others (eq. 8) and sorts the rest around the centre.
 fn one_ring(ball: &[Neighbor], params: &RefineParams) -> Vec<RingEntry> {
-    let mut kept: Vec<bool> =
-        (0..ball.len()).map(|i| !is_behind(ball, i, params.sin_theta_f())).collect();
+    let stays = |i: usize| !ball[i].is_doubtful && !is_behind(ball, i, params.sin_theta_f());
+    let mut kept: Vec<bool> = (0..ball.len()).map(stays).collect();
     if params.rules.natural_neighbors {
         let natural = |i: usize| kept[i] || is_in_open_gap(ball, &kept, i) && is_natural(ball, i);
         kept = (0..ball.len()).map(natural).collect();
@@ -222,7 +236,7 @@ pub(crate) fn is_behind(ball: &[Neighbor], i: usize, sin_theta_f: f32) -> bool {
     for (j, other) in ball.iter().enumerate() {
         let c = ball[i].offset - other.offset;
         let product = other.offset.dot(other.offset) * c.dot(c);
-        if i == j || product == 0.0 {
+        if i == j || other.is_doubtful || product == 0.0 {
             continue;
         }
         let along = other.offset.dot(c);

@@ -112,7 +112,11 @@ pub fn is_steep(corners: [Corner; 3], size: f32) -> bool {
 
 /// Normal of a new point; `size` as in [`center_normal`].
 pub fn new_normal(corners: [Corner; 3], size: f32, rules: Rules) -> Option<Vec3> {
-    if rules.sliver_normals { safe_normal(corners, size) } else { center_normal(corners, size) }
+    if rules.sliver_normals {
+        safe_normal(corners, size, rules)
+    } else {
+        center_normal(corners, size)
+    }
 }
 
 /// Cosine of 15°, and one over its distance from the cosine of 5°: between them a normal blends from the interpolated to
@@ -122,28 +126,45 @@ const BLEND: f32 = 33.037_24;
 
 /// [`center_normal`], but where that is far from the quadratic normal of the corners (Vlachos et al. 2001, section 3.3)
 /// the latter: in slivers the cross product keeps little but rounding.
-fn safe_normal(corners: [Corner; 3], size: f32) -> Option<Vec3> {
+fn safe_normal(corners: [Corner; 3], size: f32, rules: Rules) -> Option<Vec3> {
     let exact = center_normal(corners, size)?;
-    let smooth = quadratic_normal(corners, size)?;
+    let smooth = quadratic_normal(corners, size, rules)?;
     let t = ((exact.dot(smooth) - FAR) * BLEND).clamp(0.0, 1.0);
     let blend = exact * t + smooth * (1.0 - t);
     Some(unit(blend))
 }
 
 /// Normal at the centre of the quadratic patch of normals; `None` where those of the corners cancel.
-fn quadratic_normal([a, b, c]: [Corner; 3], size: f32) -> Option<Vec3> {
+fn quadratic_normal([a, b, c]: [Corner; 3], size: f32, rules: Rules) -> Option<Vec3> {
     let corners = (a.normal + b.normal + c.normal) * 0.111_111_11;
-    let edges = edge_normal(a, b, size) + edge_normal(b, c, size) + edge_normal(c, a, size);
+    let edge = |a, b| edge_normal(a, b, size, rules);
+    let edges = edge(a, b) + edge(b, c) + edge(c, a);
     let n = corners + edges * 0.222_222_22;
     if n.dot(n) > FLAT { Some(unit(n)) } else { None }
 }
 
+/// From this share of the bound of eq. 6 on an edge is a step.
+pub const STEP: f32 = 0.4;
+/// One over the width of the range below it where an edge is both.
+pub const STEP_BLEND: f32 = 5.0;
+
 /// The mean of two normals, reflected across the plane that halves their edge; zero where they cancel.
-fn edge_normal(a: Corner, b: Corner, size: f32) -> Vec3 {
+///
+/// Normals that both lean the same way along the edge make a step, and the reflection turns by as much to the other way.
+/// That is right for a slope of one sheet; where two sheets were joined for want of samples it makes normals that fit
+/// neither. So the steeper the step, the less is reflected.
+fn edge_normal(a: Corner, b: Corner, size: f32, rules: Rules) -> Vec3 {
     let sum = a.normal + b.normal;
     let u = (b.position - a.position) * (1.0 / size);
     let u2 = u.dot(u);
-    let reflected = if u2 > 0.0 { sum - u * (2.0 * u.dot(sum) / u2) } else { sum };
+    let mut reflected = sum;
+    if u2 > 0.0 {
+        let along = u.dot(sum);
+        let step = along.abs() / (u2.sqrt() * (1.0 + a.normal.dot(b.normal)) + 1e-6);
+        let blend = ((STEP - step) * STEP_BLEND).clamp(0.0, 1.0);
+        let share = if rules.step_normals { blend } else { 1.0 };
+        reflected = sum - u * (2.0 * share * along / u2);
+    }
     if reflected.dot(reflected) > FLAT { unit(reflected) } else { Vec3::ZERO }
 }
 
