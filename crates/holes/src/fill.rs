@@ -26,6 +26,8 @@ pub struct Fill {
     pub points: usize,
     /// Rounds until there was no candidate.
     pub rounds: u32,
+    /// Points, of the rim and of the fill, at which the fill leaves a place open: 0 where it closes.
+    pub open: usize,
     /// Time of the rounds.
     pub duration: Duration,
 }
@@ -73,25 +75,41 @@ pub fn fill(points: &PointSet, loops: &[Loop]) -> Filled {
     Filled { points: filled, fills: fronts.into_iter().map(|(_, report)| report).collect() }
 }
 
-/// The front of a filled loop.
+/// The front of a filled loop. Where the triangles over the rim alone leave it open, as at the end of a tube, the fill
+/// starts from an apex instead, if that leaves less open.
 fn fill_one(cloud: &Level, hole: &Loop) -> (Front, Fill) {
     let begin = Instant::now();
     let mut front = Front::new(cloud, hole);
+    let (mut rounds, mut open) = grow(&mut front);
+    if open > 0 {
+        let mut other = Front::new(cloud, hole);
+        other.add_apex();
+        let (more, still_open) = grow(&mut other);
+        rounds += more;
+        if still_open < open {
+            (front, open) = (other, still_open);
+        }
+    }
+    refit_normals(&mut front);
+    let (rim, points) = (front.rim.len(), front.fill().len());
+    let report = Fill { id: hole.id, rim, points, rounds, open, duration: begin.elapsed() };
+    (front, report)
+}
+
+/// Adds points in rounds until there is no candidate. The number of rounds and of fans that stay open.
+fn grow(front: &mut Front) -> (u32, usize) {
     let mut rounds = 0;
-    while rounds < MOST_ROUNDS {
-        let rings = front.fans();
-        let new = independent(&candidates(&front, &rings));
-        if new.is_empty() {
-            break;
+    loop {
+        let rings = front.fit_fans();
+        let new = independent(&candidates(front, &rings));
+        if std::env::var("DBG").is_ok() { eprintln!("round {rounds} new {} of {} mean ball {} open {}", new.len(), front.len(), front.level.radii.iter().sum::<f32>() / front.len() as f32 , front.open_fans(&rings)); }
+        if new.is_empty() || rounds == MOST_ROUNDS {
+            return (rounds, front.open_fans(&rings));
         }
         for c in new {
             front.add(c.position, c.normal, c.rho, c.corners);
         }
-        relax(&mut front);
+        relax(front);
         rounds += 1;
     }
-    refit_normals(&mut front);
-    let (rim, points) = (front.rim.len(), front.fill().len());
-    let report = Fill { id: hole.id, rim, points, rounds, duration: begin.elapsed() };
-    (front, report)
 }

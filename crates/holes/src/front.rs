@@ -3,9 +3,10 @@
 //! Nothing else is seen, no other sheet and no other hole, so that balls may be as large as the loop.
 
 use crate::loops::Loop;
+use crate::relax::height;
 use glam::Vec3;
 use surfine_points::{Grid, RefineParams, Rules};
-use surfine_reference::math::{PI, TAU, direction_angle, tangent_frame};
+use surfine_reference::math::{TAU, direction_angle, tangent_frame, unit};
 use surfine_reference::neighborhood::{Rings, neighborhood};
 use surfine_reference::{Level, point_grid};
 
@@ -15,6 +16,8 @@ const RIM_BALL: f32 = 1.02;
 const FILL_BALL: f32 = 1.6;
 /// A fan with a wider gap misses a neighbour, radians (109°).
 const OPEN_FAN: f32 = 1.902_408_9;
+/// A gap that is wider at the end is a place that was not filled, radians (150°).
+const OPEN_PLACE: f32 = 2.617_993_9;
 /// What an open fan's ball grows by, and how often.
 const GROWTH: f32 = 1.4;
 const TRIES: u32 = 3;
@@ -45,6 +48,8 @@ pub(crate) struct Front {
     pub(crate) rim: Vec<u32>,
     /// The open sectors of each rim point: one, or several where the loop touches itself.
     sectors: Vec<Vec<Sector>>,
+    /// No ball is larger: it reaches across the loop.
+    largest: f32,
     params: RefineParams,
 }
 
@@ -56,7 +61,8 @@ impl Front {
         let params = RefineParams { rules, ..RefineParams::default() };
         let (level, spacings, rim) = (Level::default(), Vec::new(), Vec::new());
         let (parents, sectors) = (Vec::new(), Vec::new());
-        let mut front = Self { level, spacings, parents, rim, sectors, params };
+        let largest = RIM_BALL * hole.span;
+        let mut front = Self { level, spacings, parents, rim, sectors, largest, params };
         let corners = hole.points.len();
         for (i, &p) in hole.points.iter().enumerate() {
             let (position, normal) = (cloud.positions[p as usize], cloud.normals[p as usize]);
@@ -69,7 +75,7 @@ impl Front {
             }
             front.rim.push(p);
             front.sectors.push(vec![sector]);
-            front.push(position, normal, RIM_BALL * hole.span, hole.spacings[i]);
+            front.push(position, normal, largest, hole.spacings[i]);
         }
         front
     }
@@ -79,6 +85,43 @@ impl Front {
         self.level.normals.push(normal);
         self.level.radii.push(ball);
         self.spacings.push(spacing);
+    }
+
+    /// Adds a fill point in the middle of the loop, where the tangent planes of all its points want it on average (see
+    /// [`crate::relax`]): the start for the end of a tube, whose points see nothing of the other side on their
+    /// tangent planes.
+    pub(crate) fn add_apex(&mut self) {
+        let rim = self.level.positions.clone();
+        let share = 1.0 / rim.len() as f32;
+        let middle = rim.iter().fold(Vec3::ZERO, |sum, &x| sum + (x - rim[0])) * share + rim[0];
+        // The open side is to the right of the loop, so its vector area points inward.
+        let next = rim.iter().cycle().skip(1);
+        let area = rim.iter().zip(next).fold(Vec3::ZERO, |sum, (&a, &b)| {
+            let [a, b] = [a, b].map(|x| (x - middle) * (1.0 / self.level.radii[0]));
+            sum + b.cross(a)
+        });
+        if area.dot(area) < 1e-12 {
+            return;
+        }
+        let normal = unit(area);
+        let height = rim.iter().zip(&self.level.normals).fold(0.0, |sum, (&x, &n)| {
+            sum + height(x - middle, normal, n)
+        });
+        let apex = middle + normal * (height * share);
+        let rho = rim.iter().map(|&x| (x - apex).length()).fold(0.0, f32::max);
+        let spacing = self.spacings.iter().sum::<f32>() * share;
+        self.push(apex, normal, FILL_BALL * rho, spacing);
+        let third = rim.len() as u32 / 3;
+        self.parents.push([0, third, 2 * third]);
+    }
+
+    /// How many fans leave a place open, the rim's within their sectors only.
+    pub(crate) fn open_fans(&self, rings: &Rings) -> usize {
+        let rim = (0..self.rim.len()).filter(|&p| {
+            let angles: Vec<f32> = rings.ring(p).iter().map(|e| e.angle).collect();
+            self.sectors[p].iter().any(|sector| sector.widest_gap(&angles) > OPEN_PLACE)
+        });
+        rim.count() + self.fill().filter(|&p| widest_gap(rings, p) > OPEN_PLACE).count()
     }
 
     /// Adds a fill point in the middle of three points of the front.
@@ -108,16 +151,20 @@ impl Front {
         corners.map(|c| self.spacings[c as usize]).iter().sum::<f32>() / 3.0
     }
 
-    /// The fans of all points. Balls of open fans grow first, then all shrink to their fans.
-    pub(crate) fn fans(&mut self) -> Rings {
-        let mut rings = neighborhood(&self.level, &self.grid(), &self.params);
+    /// The fans of all points, with balls that are large enough and no larger: those of open fans grow, then all
+    /// shrink to their fans.
+    pub(crate) fn fit_fans(&mut self) -> Rings {
+        let mut rings = self.fans();
         for _ in 0..TRIES {
-            let open: Vec<usize> = self.fill().filter(|&p| is_open(&rings, p)).collect();
+            let open: Vec<usize> =
+                self.fill().filter(|&p| widest_gap(&rings, p) > OPEN_FAN).collect();
             if open.is_empty() {
                 break;
             }
-            open.into_iter().for_each(|p| self.level.radii[p] *= GROWTH);
-            rings = neighborhood(&self.level, &self.grid(), &self.params);
+            for p in open {
+                self.level.radii[p] = (self.level.radii[p] * GROWTH).min(self.largest);
+            }
+            rings = self.fans();
         }
         for p in 0..self.len() {
             let farthest = rings.ring(p).iter().map(|e| self.offset(p, e.id as usize).length());
@@ -127,6 +174,11 @@ impl Front {
             }
         }
         rings
+    }
+
+    /// The fans of all points.
+    pub(crate) fn fans(&self) -> Rings {
+        neighborhood(&self.level, &self.grid(), &self.params)
     }
 
     /// From one point to another.
@@ -150,15 +202,26 @@ impl Front {
 }
 
 impl Sector {
+    /// Angle from the beginning of the sector.
+    fn from_start(self, angle: f32) -> f32 {
+        let turn = angle - self.start;
+        let turn = if turn < 0.0 { turn + TAU } else { turn };
+        if turn > TAU - END { 0.0 } else { turn }
+    }
+
     /// Whether two directions lie in the sector, the first before the last.
     fn holds(self, first: f32, last: f32) -> bool {
-        let from_start = |angle: f32| {
-            let turn = angle - self.start;
-            let turn = if turn < 0.0 { turn + TAU } else { turn };
-            if turn > TAU - END { 0.0 } else { turn }
-        };
-        let (first, last) = (from_start(first), from_start(last));
+        let (first, last) = (self.from_start(first), self.from_start(last));
         first < last && last <= self.width + END
+    }
+
+    /// The widest angle in the sector without any of these directions.
+    fn widest_gap(self, angles: &[f32]) -> f32 {
+        let mut inside: Vec<f32> = angles.iter().map(|&a| self.from_start(a)).collect();
+        inside.retain(|&a| a < self.width);
+        inside.extend([0.0, self.width]);
+        inside.sort_by(f32::total_cmp);
+        inside.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f32::max)
     }
 }
 
@@ -168,9 +231,12 @@ fn direction(normal: Vec3, offset: Vec3) -> f32 {
     direction_angle(offset.dot(e2), offset.dot(e1))
 }
 
-/// Whether a fan has a gap that misses a neighbour.
-fn is_open(rings: &Rings, p: usize) -> bool {
+/// The widest gap of a fan, radians; a full turn for fewer than three members.
+fn widest_gap(rings: &Rings, p: usize) -> f32 {
     let ring = rings.ring(p);
-    let next = ring.iter().skip(1).map(|e| e.angle).chain(ring.first().map(|e| e.angle + TAU));
-    ring.len() < 3 || ring.iter().zip(next).any(|(e, next)| next - e.angle > OPEN_FAN.min(PI))
+    if ring.len() < 3 {
+        return TAU;
+    }
+    let next = ring.iter().skip(1).map(|e| e.angle).chain([ring[0].angle + TAU]);
+    ring.iter().zip(next).map(|(e, next)| next - e.angle).fold(0.0, f32::max)
 }

@@ -17,7 +17,7 @@ const TANGENTIAL: f32 = 0.5;
 /// Smooths the fill.
 pub(crate) fn relax(front: &mut Front) {
     for _ in 0..SWEEPS / SWEEPS_A_FAN {
-        let rings = front.fans();
+        let rings = front.fit_fans();
         for _ in 0..SWEEPS_A_FAN {
             sweep(front, &rings);
         }
@@ -34,10 +34,15 @@ fn sweep(front: &mut Front, rings: &Rings) {
     }
 }
 
-/// Where a fill point and its normal go.
+/// How far a point must move along its normal to lie on one circle with a neighbour at offset `d`, each with its normal.
 ///
-/// The circle through a point and its neighbour with normals n and n_j has `d·(n + n_j) = 0`: moving the point by
-/// `d·(n + n_j) / n·(n + n_j)` along n brings it there. So spheres stay as they are.
+/// Such a circle has `d·(n + n_j) = 0`. So spheres stay as they are.
+pub(crate) fn height(d: Vec3, normal: Vec3, other: Vec3) -> f32 {
+    let both = normal + other;
+    d.dot(both) / normal.dot(both).max(LEAST_COSINE)
+}
+
+/// Where a fill point and its normal go: to the mean height that its neighbours want, and towards their middle.
 fn moved(front: &Front, rings: &Rings, p: usize) -> (Vec3, Vec3) {
     let (position, old) = (front.level.positions[p], front.level.normals[p]);
     let ring = rings.ring(p);
@@ -46,22 +51,21 @@ fn moved(front: &Front, rings: &Rings, p: usize) -> (Vec3, Vec3) {
         return (position, old);
     }
     let normal = unit(sum);
-    let (mut height, mut middle) = (0.0, Vec3::ZERO);
+    let (mut raise, mut middle) = (0.0, Vec3::ZERO);
     for e in ring {
         let (d, other) = (front.offset(p, e.id as usize), front.level.normals[e.id as usize]);
-        let both = normal + other;
-        height += d.dot(both) / normal.dot(both).max(LEAST_COSINE);
+        raise += height(d, normal, other);
         middle += d;
     }
     let share = 1.0 / ring.len() as f32;
     let tangential = (middle - normal * middle.dot(normal)) * share;
-    (position + normal * (height * share) + tangential * TANGENTIAL, normal)
+    (position + normal * (raise * share) + tangential * TANGENTIAL, normal)
 }
 
 /// The normals of the fill from its final positions: each is the sum over its fan's triangles of
 /// `d_j × d_k / |d_j|²|d_k|²` (Max 1999), which is exact on spheres. Smoothed normals would show at later levels.
 pub(crate) fn refit_normals(front: &mut Front) {
-    let rings = front.fans();
+    let rings = front.fit_fans();
     let fit = |p: usize| {
         let ring = rings.ring(p);
         let old = front.level.normals[p];
