@@ -2,9 +2,9 @@
 
 use crate::args::RefineArgs;
 use crate::backend::{self, Computed};
-use crate::report::{Report, Times};
+use crate::report::{Input, Report, Times};
 use crate::watch::Watch;
-use crate::{Failure, files, print};
+use crate::{Failure, files, fill, print};
 use std::time::{Duration, Instant};
 use surfine_points::ply::{self, PlyError, Provenance, Source};
 use surfine_points::{Interpolation, PointSet, Values};
@@ -37,13 +37,17 @@ fn refine(args: &RefineArgs, watch: &Watch) -> Result<Report, Failure> {
     let (mut points, source) = input?;
     set_attribute_rules(args, &mut points)?;
     check_attributes(args, &points)?;
+    let choice = args.fill_holes();
+    let (fill, filled) = timed(|| fill::filled(&args.input, &points, &choice, watch));
+    let filled = filled?;
     watch.step("preparing".into());
-    let computed = backend::compute(args, &points, watch)?;
+    let computed = backend::compute(args, &filled.points, watch)?;
     watch.step(format!("writing {}", args.output.display()));
     let (write, written) = timed(|| write(args, &computed, &source));
     written?;
-    let times = Times { read, setup: computed.setup, refine: computed.refine, write };
-    Ok(Report::new(args, &points, &source, &computed, times))
+    let times = Times { read, fill, setup: computed.setup, refine: computed.refine, write };
+    let input = Input { points: &points, filled: &filled, source: &source };
+    Ok(Report::new(args, input, &computed, times))
 }
 
 /// Gives the properties the rules that the user asks for.

@@ -2,19 +2,30 @@
 
 use crate::args::RefineArgs;
 use crate::backend::{Backend, Computed};
+use crate::fill::{Hole, fill_notes, summary};
 use serde::{Serialize, Serializer};
 use std::fmt::{self, Display, Formatter};
 use std::path::Path;
 use std::time::Duration;
 use surfine::{LevelReport, Mode, Neighborhood, PointSet, RefineParams};
+use surfine_holes::Filled;
 use surfine_points::ply::Source;
 
 /// How long the steps took.
 pub(crate) struct Times {
     pub(crate) read: Duration,
+    pub(crate) fill: Duration,
     pub(crate) setup: Duration,
     pub(crate) refine: Duration,
     pub(crate) write: Duration,
+}
+
+/// The cloud that was read, and what was filled.
+#[derive(Clone, Copy)]
+pub(crate) struct Input<'a> {
+    pub(crate) points: &'a PointSet,
+    pub(crate) filled: &'a Filled,
+    pub(crate) source: &'a Source,
 }
 
 /// The summary. Its names are the keys of the JSON object.
@@ -34,6 +45,8 @@ pub(crate) struct Report {
     threads: Option<usize>,
     /// Bytes of the engine's buffers when the last level ended.
     device_bytes: Option<u64>,
+    /// The loops that were chosen to be filled.
+    holes: Vec<Hole>,
     params: Params,
     levels: Vec<Level>,
     seconds: Seconds,
@@ -77,6 +90,7 @@ struct Level {
 #[derive(Serialize)]
 struct Seconds {
     read: f64,
+    fill: f64,
     setup: f64,
     refine: f64,
     write: f64,
@@ -85,8 +99,7 @@ struct Seconds {
 impl Report {
     pub(crate) fn new(
         args: &RefineArgs,
-        points: &PointSet,
-        source: &Source,
+        read: Input<'_>,
         computed: &Computed,
         times: Times,
     ) -> Self {
@@ -98,18 +111,19 @@ impl Report {
         Self {
             input: name(&args.input),
             output: name(&args.output),
-            points_in: points.len(),
+            points_in: read.points.len(),
             points_out: refined.points.len(),
             backend: if adapter.is_some() { "gpu" } else { "cpu" },
             adapter,
             mode: mode.name(),
             threads,
             device_bytes: refined.device_bytes,
+            holes: read.filled.fills.iter().map(Hole::new).collect(),
             params: Params::new(&args.params()),
             levels: refined.reports.iter().map(Level::new).collect(),
             points_per_second: per_second(refined.parents.len(), times.refine),
             seconds: Seconds::new(&times),
-            notes: notes(points, source, computed, mode),
+            notes: notes(args, read, computed, mode),
         }
     }
 }
@@ -167,20 +181,23 @@ impl Level {
 
 impl Seconds {
     fn new(times: &Times) -> Self {
-        let &Times { read, setup, refine, write } = times;
-        let [read, setup, refine, write] = [read, setup, refine, write].map(|t| t.as_secs_f64());
-        Self { read, setup, refine, write }
+        let &Times { read, fill, setup, refine, write } = times;
+        let seconds = [read, fill, setup, refine, write].map(|t| t.as_secs_f64());
+        let [read, fill, setup, refine, write] = seconds;
+        Self { read, fill, setup, refine, write }
     }
 
     fn total(&self) -> f64 {
-        self.read + self.setup + self.refine + self.write
+        self.read + self.fill + self.setup + self.refine + self.write
     }
 }
 
 /// Everything that was treated in a special way, with how many points it concerns.
-fn notes(points: &PointSet, source: &Source, computed: &Computed, mode: Mode) -> Vec<String> {
+fn notes(args: &RefineArgs, read: Input<'_>, computed: &Computed, mode: Mode) -> Vec<String> {
+    let Input { points, filled, source } = read;
     let mut notes: Vec<String> = computed.fallback.iter().cloned().collect();
     notes.extend(source.notes.iter().cloned());
+    notes.extend(fill_notes(&args.fill_holes(), filled));
     match points.non_unit_normals() {
         0 => {}
         count => notes.push(format!(
@@ -224,11 +241,13 @@ impl Display for Report {
             (Some(adapter), _) => writeln!(f, "backend  gpu, {adapter}, mode {}", self.mode)?,
             (None, threads) => writeln!(f, "backend  cpu, threads: {}", threads.unwrap_or(1))?,
         }
+        f.write_str(&summary(&self.holes))?;
         for (number, level) in (1..).zip(&self.levels) {
             write!(f, "level {number}  {level}")?;
         }
         write!(f, "{}", self.seconds)?;
-        let new = self.points_out - self.points_in;
+        let filled: usize = self.holes.iter().map(Hole::points).sum();
+        let new = self.points_out - self.points_in - filled;
         writeln!(
             f,
             "speed    {new} new points, {:.0} a second of refinement",
@@ -258,10 +277,10 @@ impl Display for Level {
 
 impl Display for Seconds {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let Self { read, setup, refine, write } = self;
+        let Self { read, fill, setup, refine, write } = self;
         writeln!(
             f,
-            "time     {:.3} s: read {read:.3}, set up {setup:.3}, refine {refine:.3}, write {write:.3}",
+            "time     {:.3} s: read {read:.3}, fill {fill:.3}, set up {setup:.3}, refine {refine:.3}, write {write:.3}",
             self.total()
         )
     }

@@ -4,13 +4,12 @@ use surfine_points::*;
 fn main() {
     let args: Vec<String> = std::env::args().skip(1).collect();
     if args[0] == "fill" {
-        let (mut points, source) = ply::read(args[1].as_ref()).unwrap();
+        let (points, source) = ply::read(args[1].as_ref()).unwrap();
         let ids: Vec<u32> = args[2].split(',').map(|i| i.parse().unwrap()).collect();
         let all = loops(&points);
         let chosen: Vec<Loop> = all.into_iter().filter(|l| ids.contains(&l.id)).collect();
-        let nat = shapes::natural_radii(&points.positions, &points.unit_normals());
-        for (r, n) in points.radii.iter_mut().zip(nat) { if *r > 2.5 * n { *r = n; } }
-        let filled = fill(&points, &chosen);
+        let filled = fill_holes(&points, &Choice::Ids(ids)).unwrap();
+        println!("restored {} kept {}", filled.restored, filled.kept_raised);
         for f in &filled.fills { println!("{f:?}"); }
         measure(&filled.points, points.len(), &chosen);
         ply::write(args[3].as_ref(), &filled.points, None, &source, ply::Encoding::Binary).unwrap();
@@ -22,7 +21,7 @@ fn main() {
         let found = loops(&points);
         println!("{path}: {} points, {} loops, {:?}", points.len(), found.len(), t.elapsed());
         for l in found.iter().take(16) {
-            println!("   {} {} points span {:.4} = {:.2} s, perimeter {:.2} s, turning {:.0} {} width {:.2}", l.id, l.points.len(), l.span, l.span / l.spacing(), l.perimeter / l.spacing(), l.turning.to_degrees(), l.kind(), l.width / l.spacing());
+            println!("   {} {} points span {:.4} = {:.2} s, perimeter {:.2} s, turning {:.0} {} width {:.2}", l.id, l.points.len(), l.span, l.span / l.spacing(), l.perimeter / l.spacing(), l.turning.to_degrees(), l.kind(), l.width.unwrap_or(9e9) / l.spacing());
         }
     }
 }

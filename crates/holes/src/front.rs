@@ -115,13 +115,18 @@ impl Front {
         self.parents.push([0, third, 2 * third]);
     }
 
-    /// How many fans leave a place open, the rim's within their sectors only.
+    /// Whether a fan leaves a place open, of a rim point within its sectors only.
+    fn is_open(&self, rings: &Rings, p: usize) -> bool {
+        let Some(sectors) = self.sectors.get(p) else {
+            return widest_gap(rings, p) > OPEN_PLACE;
+        };
+        let angles: Vec<f32> = rings.ring(p).iter().map(|e| e.angle).collect();
+        sectors.iter().any(|sector| sector.widest_gap(&angles) > OPEN_PLACE)
+    }
+
+    /// How many fans leave a place open.
     pub(crate) fn open_fans(&self, rings: &Rings) -> usize {
-        let rim = (0..self.rim.len()).filter(|&p| {
-            let angles: Vec<f32> = rings.ring(p).iter().map(|e| e.angle).collect();
-            self.sectors[p].iter().any(|sector| sector.widest_gap(&angles) > OPEN_PLACE)
-        });
-        rim.count() + self.fill().filter(|&p| widest_gap(rings, p) > OPEN_PLACE).count()
+        (0..self.len()).filter(|&p| self.is_open(rings, p)).count()
     }
 
     /// Adds a fill point in the middle of three points of the front.
@@ -151,8 +156,8 @@ impl Front {
         corners.map(|c| self.spacings[c as usize]).iter().sum::<f32>() / 3.0
     }
 
-    /// The fans of all points, with balls that are large enough and no larger: those of open fans grow, then all
-    /// shrink to their fans.
+    /// The fans of all points, with balls that are large enough and no larger: those of open fans grow, then those
+    /// of closed ones shrink.
     pub(crate) fn fit_fans(&mut self) -> Rings {
         let mut rings = self.fans();
         for _ in 0..TRIES {
@@ -167,6 +172,9 @@ impl Front {
             rings = self.fans();
         }
         for p in 0..self.len() {
+            if self.is_open(&rings, p) {
+                continue;
+            }
             let farthest = rings.ring(p).iter().map(|e| self.offset(p, e.id as usize).length());
             let farthest = farthest.fold(0.0, f32::max);
             if farthest > 0.0 {

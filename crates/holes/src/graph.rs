@@ -5,6 +5,7 @@
 
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 use surfine_points::RefineParams;
 use surfine_reference::math::tangent_frame;
 use surfine_reference::neighborhood::{RingEntry, neighborhood};
@@ -53,11 +54,11 @@ impl Graph {
         &self.entries[self.starts[p] as usize..self.starts[p + 1] as usize]
     }
 
-    /// Mean length of the edges at a point; `None` if it has none.
-    pub(crate) fn mean_edge(&self, level: &Level, p: usize) -> Option<f32> {
+    /// Mean length of the edges at a point; 0 if it has none.
+    pub(crate) fn mean_edge(&self, level: &Level, p: usize) -> f32 {
         let list = self.list(p);
         let sum: f32 = list.iter().map(|e| distance(level, p as u32, e.id)).sum();
-        (!list.is_empty()).then(|| sum / list.len() as f32)
+        sum / list.len().max(1) as f32
     }
 
     /// The edges that cross a shorter one that stays, sorted.
@@ -69,17 +70,17 @@ impl Graph {
             .flat_map_iter(|(p, q)| self.crossing(level, [p, q]))
             .collect();
         // The longer edge first; an edge is judged after all shorter ones that it crosses.
-        let longer = |a: &Edge, b: &Edge| {
+        let by_length = |a: &Edge, b: &Edge| {
             let [a_length, b_length] = [a, b].map(|e| distance(level, e[0], e[1]));
             a_length.total_cmp(&b_length).then(a.cmp(b))
         };
         for pair in &mut pairs {
-            if longer(&pair[0], &pair[1]).is_lt() {
+            if by_length(&pair[0], &pair[1]).is_lt() {
                 pair.swap(0, 1);
             }
         }
-        pairs.sort_by(|a, b| longer(&a[0], &b[0]).then(a[1].cmp(&b[1])));
-        let mut dropped = std::collections::BTreeSet::new();
+        pairs.sort_by(|a, b| by_length(&a[0], &b[0]).then(a[1].cmp(&b[1])));
+        let mut dropped = BTreeSet::new();
         for [long, short] in pairs {
             if !dropped.contains(&short) {
                 dropped.insert(long);

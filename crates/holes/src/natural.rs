@@ -1,7 +1,8 @@
 //! Natural radii, and radii that were raised by hand to close a hole as in [R] figure 9 (rule 0, ours).
 
-use surfine_points::PointSet;
+use glam::Vec3;
 use surfine_points::shapes::{natural_radii, natural_radii_of};
+use surfine_points::{Grid, GridShape, PointSet};
 
 /// Only radii of more than this many median radii are looked at: a large cloud without any costs a median.
 const SUSPICIOUS: f32 = 4.0;
@@ -30,16 +31,49 @@ pub fn raised(points: &PointSet) -> Vec<Raised> {
         return Vec::new();
     }
     let natural = natural_radii_of(&suspects, &points.positions, &points.unit_normals());
-    let found = suspects.into_iter().zip(natural);
-    let raised = found.filter(|&(p, natural)| points.radii[p as usize] > RAISED * natural);
-    raised.map(|(point, radius)| Raised { point, radius }).collect()
+    let mut found: Vec<Raised> = suspects
+        .into_iter()
+        .zip(natural)
+        .filter(|&(p, natural)| points.radii[p as usize] > RAISED * natural)
+        .map(|(point, radius)| Raised { point, radius })
+        .collect();
+    if let Some(widest) = found.iter().map(|raised| raised.radius).reduce(f32::max) {
+        bound_by_neighbors(points, &mut found, widest);
+    }
+    found
+}
+
+/// Lowers each radius to the largest of those points within it that were not raised, if there are any.
+fn bound_by_neighbors(points: &PointSet, raised: &mut [Raised], widest: f32) {
+    let low = points.positions.iter().copied().reduce(Vec3::min).unwrap_or(Vec3::ZERO);
+    let shape = GridShape::with_cell(low, widest, points.len());
+    let grid = Grid::build(shape, (0u32..).zip(points.positions.iter().copied()));
+    let known: Vec<u32> = raised.iter().map(|raised| raised.point).collect();
+    for raised in raised {
+        let center = points.positions[raised.point as usize];
+        let mut largest = 0.0f32;
+        grid.visit_ball(center, raised.radius, |p| {
+            let d = points.positions[p as usize] - center;
+            if d.dot(d) <= raised.radius * raised.radius && known.binary_search(&p).is_err() {
+                largest = largest.max(points.radii[p as usize]);
+            }
+        });
+        if largest > 0.0 {
+            raised.radius = raised.radius.min(largest);
+        }
+    }
 }
 
 /// The smaller of the natural and the given radius of each point: a given one that is less knows more, for instance
 /// which points a mesh connects.
 pub(crate) fn least_radii(points: &PointSet) -> Vec<f32> {
     let natural = natural_radii(&points.positions, &points.unit_normals());
-    natural.iter().zip(&points.radii).map(|(natural, given)| natural.min(*given)).collect()
+    let mut least: Vec<f32> =
+        natural.iter().zip(&points.radii).map(|(natural, given)| natural.min(*given)).collect();
+    for Raised { point, radius } in raised(points) {
+        least[point as usize] = radius;
+    }
+    least
 }
 
 fn median(values: &[f32]) -> Option<f32> {

@@ -6,14 +6,18 @@
 use crate::graph::distance;
 use surfine_reference::Level;
 
-/// Loops of more points are wide without a look: the search takes the third power of their number.
-pub(crate) const MOST_POINTS: usize = 400;
+/// The search takes the third power of the number of points.
+const MOST_POINTS: usize = 400;
 
-/// The largest circumscribed circle of a triangulation of the closed chain, as small as it can be: its radius.
+/// The largest circumscribed circle of a triangulation of the closed chain, as small as it can be: its radius; `None` for
+/// chains of more than [`MOST_POINTS`].
 ///
 /// Dynamic programming over the pieces of the chain (Barequet and Sharir 1995, with another weight).
-pub(crate) fn width(level: &Level, chain: &[u32]) -> f32 {
+pub(crate) fn width(level: &Level, chain: &[u32]) -> Option<f32> {
     let n = chain.len();
+    if n > MOST_POINTS {
+        return None;
+    }
     let edges: Vec<f32> =
         (0..n * n).map(|i| distance(level, chain[i / n], chain[i % n])).collect();
     let edge = |i: usize, j: usize| edges[i * n + j];
@@ -28,15 +32,21 @@ pub(crate) fn width(level: &Level, chain: &[u32]) -> f32 {
             best[i * n + j] = (i + 1..j).map(through).fold(f32::INFINITY, f32::min);
         }
     }
-    best[n - 1]
+    Some(best[n - 1])
 }
 
-/// Radius of the circle through the corners of a triangle with these sides; without area that of the longest side.
-pub(crate) fn circumradius([a, b, c]: [f32; 3]) -> f32 {
-    let longest = a.max(b).max(c);
+/// Radius of the circle through the corners of a triangle with these sides; without area half of the longest side if
+/// two corners are in one place, else infinite.
+pub(crate) fn circumradius(sides: [f32; 3]) -> f32 {
+    let longest = sides.into_iter().fold(f32::MIN_POSITIVE, f32::max);
     // Heron's formula for sixteen times the squared area, in units of the longest side.
-    let [a, b, c] = [a, b, c].map(|side| side / longest.max(f32::MIN_POSITIVE));
+    let [a, b, c] = sides.map(|side| side / longest);
     let area = (a + b + c) * (b + c - a) * (c + a - b) * (a + b - c);
-    let half = 0.5 * longest;
-    if area > 1e-10 { longest * (a * b * c / area.sqrt()).max(0.5) } else if a.min(b).min(c) < 1e-3 { half } else { f32::INFINITY }
+    if area > 1e-10 {
+        longest * (a * b * c / area.sqrt()).max(0.5)
+    } else if a.min(b).min(c) < 1e-3 {
+        0.5 * longest
+    } else {
+        f32::INFINITY
+    }
 }
