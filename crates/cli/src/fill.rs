@@ -138,8 +138,8 @@ pub(crate) fn fill_notes(choice: &FillChoice, filled: &Filled) -> Vec<String> {
     for fill in fills.iter().filter(|fill| fill.points == 0) {
         notes.push(format!("loop {} could not be closed: left as it was", fill.id));
     }
-    for fill in fills.iter().filter(|fill| fill.points > 0 && 50 * fill.open > fill.points) {
-        notes.push(format!("loop {}: {} points still see a place open", fill.id, fill.open));
+    for fill in fills.iter().filter(|fill| fill.points > 0 && 10 * fill.open > fill.points) {
+        notes.push(format!("loop {}: {} of its points still see a place open", fill.id, fill.open));
     }
     notes
 }

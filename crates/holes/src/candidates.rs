@@ -10,7 +10,7 @@ use surfine_reference::neighborhood::Rings;
 use surfine_reference::pn_triangle;
 
 /// No point comes nearer to another than this many spacings.
-const CLEARANCE: f32 = 0.7;
+const CLEARANCE: f32 = 0.65;
 /// Nor than this many ρ to another of the same round (λ2 of [R] section 5).
 const APART: f32 = 0.5;
 

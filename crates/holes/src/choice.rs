@@ -34,7 +34,9 @@ pub enum Error {
         known: Vec<u32>,
     },
     /// The cloud has an attribute `hole` that is no 32-bit integer.
-    #[error("there is a property hole that is not of type int, so fill points can't be tagged: rename it")]
+    #[error(
+        "there is a property hole that is not of type int, so fill points can't be tagged: rename it"
+    )]
     Tag,
 }
 

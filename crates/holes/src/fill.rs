@@ -3,8 +3,8 @@
 use crate::candidates::{candidates, independent};
 use crate::front::Front;
 use crate::loops::{Kind, Loop};
-use crate::{Error, HOLE};
 use crate::relax::{refit_normals, relax};
+use crate::{Error, HOLE};
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
 use surfine_points::shapes::natural_radii_of;

@@ -104,9 +104,10 @@ impl Front {
             return;
         }
         let normal = unit(area);
-        let height = rim.iter().zip(&self.level.normals).fold(0.0, |sum, (&x, &n)| {
-            sum + height(x - middle, normal, n)
-        });
+        let height = rim
+            .iter()
+            .zip(&self.level.normals)
+            .fold(0.0, |sum, (&x, &n)| sum + height(x - middle, normal, n));
         let apex = middle + normal * (height * share);
         let rho = rim.iter().map(|&x| (x - apex).length()).fold(0.0, f32::max);
         let spacing = self.spacings.iter().sum::<f32>() * share;

@@ -20,21 +20,27 @@ pub(crate) struct Graph {
 }
 
 /// An edge, its lower index first.
-type Edge = [u32; 2];
+pub(crate) type Edge = [u32; 2];
 
 impl Graph {
     /// The mutual edges of the one-rings; of two that cross the longer is dropped.
     pub(crate) fn new(level: &Level) -> Self {
         let rings = neighborhood(level, &point_grid(level), &RefineParams::default());
         let lists = (0..level.len()).into_par_iter().map(|p| {
-            let has_p = |e: &&RingEntry| rings.ring(e.id as usize).iter().any(|b| b.id as usize == p);
+            let has_p =
+                |e: &&RingEntry| rings.ring(e.id as usize).iter().any(|b| b.id as usize == p);
             rings.ring(p).iter().filter(has_p).copied().collect()
         });
         let mutual = Self::from_lists(lists.collect());
         let dropped = mutual.longer_of_crossing(level);
-        let lists = (0..level.len()).map(|p| {
+        mutual.without(&dropped)
+    }
+
+    /// The graph without these edges; they are sorted.
+    pub(crate) fn without(&self, dropped: &[Edge]) -> Self {
+        let lists = (0..self.starts.len() - 1).map(|p| {
             let keeps = |e: &&RingEntry| dropped.binary_search(&edge(p as u32, e.id)).is_err();
-            mutual.list(p).iter().filter(keeps).copied().collect()
+            self.list(p).iter().filter(keeps).copied().collect()
         });
         Self::from_lists(lists.collect())
     }
@@ -114,7 +120,8 @@ impl Graph {
     }
 }
 
-fn edge(a: u32, b: u32) -> Edge {
+/// The edge between two points.
+pub(crate) fn edge(a: u32, b: u32) -> Edge {
     if a < b { [a, b] } else { [b, a] }
 }
 

@@ -3,7 +3,7 @@
 //! The faces of the graph are the orbits of (p→q) → (q→ successor of p around q). Nearly all are triangles; a face of many
 //! edges or with an open corner is a loop if it is wide.
 
-use crate::graph::{Graph, distance};
+use crate::graph::{Edge, Graph, distance, edge};
 use crate::natural::least_radii;
 use crate::width::{circumradius, width};
 use glam::Vec3;
@@ -29,6 +29,8 @@ const LEAST_WIDTH: f32 = 1.15;
 const EVEN_TRIANGLE: f32 = 0.78;
 const EXCESS: f32 = 4.0;
 const LARGE_TRIANGLES: usize = 99;
+/// An edge with loops on both sides is a bridge over one hole from so many mean edges on.
+const LONG_EDGE: f32 = 1.4;
 /// A loop turns clearly from a quarter of a full turn on, radians.
 const CLEAR_TURNING: f32 = 0.25 * TAU;
 /// From one and a half turns on a loop is no hole but a tangle where sheets meet, radians.
@@ -112,10 +114,7 @@ pub fn loops(points: &PointSet) -> Vec<Loop> {
         radii: least_radii(points),
         ..Level::default()
     };
-    let graph = Graph::new(&level);
-    let edges: Vec<f32> = (0..level.len()).into_par_iter().map(|p| graph.mean_edge(&level, p)).collect();
-    let faces = faces(&graph);
-    let usual = usual_width(&level, &edges, &faces);
+    let (edges, usual, faces) = wide_faces(&level, Graph::new(&level));
     let creases = Creases::new(points);
     let open = faces.into_par_iter().filter(|face| face.is_open() && !creases.holds(&face.points));
     let mut loops: Vec<Loop> =
@@ -127,17 +126,47 @@ pub fn loops(points: &PointSet) -> Vec<Loop> {
     loops
 }
 
-/// How wide a loop must be, in mean edges: [`LEAST_WIDTH`], and more in clouds of large triangles, as random samples are.
-fn usual_width(level: &Level, edges: &[f32], faces: &[Face]) -> f32 {
-    let ratio = |face: &Face| match face.points[..] {
-        [a, b, c] => {
-            let sides = [[a, b], [b, c], [c, a]].map(|[a, b]| distance(level, a, b));
-            let edge = [a, b, c].map(|p| edges[p as usize]).iter().sum::<f32>() / 3.0;
-            Some(circumradius(sides) / edge)
+/// The faces of a graph, once the longest edges of triangles as wide as a loop are taken out: natural radii bridge holes of some
+/// spacings. Also the mean edge at each point, and how wide a loop must be in mean edges.
+fn wide_faces(level: &Level, mut graph: Graph) -> (Vec<f32>, f32, Vec<Face>) {
+    let mut usual = None;
+    loop {
+        let mean = |p| graph.mean_edge(level, p);
+        let edges: Vec<f32> = (0..level.len()).into_par_iter().map(mean).collect();
+        let faces = faces(&graph);
+        let ratio = |face: &Face| face.ratio(level, &edges);
+        let usual =
+            *usual.get_or_insert_with(|| usual_width(faces.par_iter().filter_map(ratio).collect()));
+        let bridges = bridges(level, &edges, usual, &faces);
+        if bridges.is_empty() {
+            return (edges, usual, faces);
         }
-        _ => None,
+        graph = graph.without(&bridges);
+    }
+}
+
+/// The longest edges of triangles as wide as a loop, and long edges with loops on both sides; sorted.
+fn bridges(level: &Level, edges: &[f32], usual: f32, faces: &[Face]) -> Vec<Edge> {
+    let is_wide = |face: &&Face| match face.ratio(level, edges) {
+        Some(ratio) => ratio >= usual,
+        None => face.is_open() && face.is_wide(level, edges, usual),
     };
-    let mut ratios: Vec<f32> = faces.par_iter().filter_map(ratio).collect();
+    let wide: Vec<&Face> = faces.par_iter().filter(is_wide).collect();
+    let triangles = wide.iter().filter(|face| face.points.len() == 3);
+    let mut bridges: Vec<Edge> = triangles.map(|face| face.longest_edge(level)).collect();
+    let mut sides: Vec<Edge> = wide.iter().flat_map(|face| face.edges()).collect();
+    sides.sort_unstable();
+    let is_long = |[a, b]: Edge| {
+        distance(level, a, b) > LONG_EDGE * 0.5 * (edges[a as usize] + edges[b as usize])
+    };
+    let between = sides.windows(2).filter(|pair| pair[0] == pair[1] && is_long(pair[0]));
+    bridges.extend(between.map(|pair| pair[0]));
+    bridges.sort_unstable();
+    bridges
+}
+
+/// How wide a loop must be, in mean edges: [`LEAST_WIDTH`], and more in clouds of large triangles, as random samples are.
+fn usual_width(mut ratios: Vec<f32>) -> f32 {
     let rank = ratios.len() * LARGE_TRIANGLES / 100;
     if rank == ratios.len() {
         return LEAST_WIDTH;
@@ -189,6 +218,34 @@ fn face(graph: &Graph, p: u32, first: usize, seen: &mut [bool]) -> Face {
 }
 
 impl Face {
+    /// Radius of the circle around a triangle in mean edges; `None` if it has more corners.
+    fn ratio(&self, level: &Level, edges: &[f32]) -> Option<f32> {
+        let [a, b, c] = self.points[..] else { return None };
+        let sides = [[a, b], [b, c], [c, a]].map(|[a, b]| distance(level, a, b));
+        let edge = [a, b, c].map(|p| edges[p as usize]).iter().sum::<f32>() / 3.0;
+        Some(circumradius(sides) / edge)
+    }
+
+    /// Whether it is as wide as a loop.
+    fn is_wide(&self, level: &Level, edges: &[f32], usual: f32) -> bool {
+        let spacing =
+            self.points.iter().map(|&p| edges[p as usize]).sum::<f32>() / self.points.len() as f32;
+        span(level, &self.points) >= SMALLEST_SPAN * spacing
+            && width(level, &self.points).is_none_or(|width| width >= usual * spacing)
+    }
+
+    fn edges(&self) -> impl Iterator<Item = Edge> {
+        let next = self.points.iter().cycle().skip(1);
+        self.points.iter().zip(next).map(|(&a, &b)| edge(a, b))
+    }
+
+    /// The longest edge, the first of equal ones.
+    fn longest_edge(&self, level: &Level) -> Edge {
+        let length = |[a, b]: Edge| distance(level, a, b);
+        let longer = |x: Edge, y: Edge| if length(y) > length(x) { y } else { x };
+        self.edges().reduce(longer).expect("a face has edges")
+    }
+
     fn is_open(&self) -> bool {
         let edges = self.points.len();
         edges >= MANY_EDGES

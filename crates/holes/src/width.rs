@@ -18,8 +18,7 @@ pub(crate) fn width(level: &Level, chain: &[u32]) -> Option<f32> {
     if n > MOST_POINTS {
         return None;
     }
-    let edges: Vec<f32> =
-        (0..n * n).map(|i| distance(level, chain[i / n], chain[i % n])).collect();
+    let edges: Vec<f32> = (0..n * n).map(|i| distance(level, chain[i / n], chain[i % n])).collect();
     let edge = |i: usize, j: usize| edges[i * n + j];
     let mut best = vec![0.0f32; n * n];
     for length in 2..n {
