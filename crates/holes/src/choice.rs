@@ -66,7 +66,7 @@ pub struct Filled {
 /// The points of the input stay as they are and come first, but for radii along the loops, which grow where new neighbours
 /// ask for it. Fill points follow loop by loop; their attributes come from the corners of their triangle. The attribute
 /// [`crate::HOLE`] tags them with the id of their loop; if there is one already, the new tags go on from its largest.
-/// A loop whose fill leaves more than a quarter of its points open is left as it was. If there is no fill point the cloud comes
+/// A loop whose fill leaves a tenth of its points open is left as it was. If there is no fill point the cloud comes
 /// back as it is.
 ///
 /// # Errors

@@ -16,7 +16,7 @@ const MOST_ROUNDS: u32 = 40;
 /// New radii are no more than this many spacings.
 const MOST_RADIUS: f32 = 3.0;
 /// A fill that leaves one in so many points open, or more, is none.
-const OPEN_SHARE: usize = 4;
+const OPEN_SHARE: usize = 10;
 /// A fill has no more points than the squared number of spacings in the loop's perimeter, and these: a disc has a tenth of
 /// it, and a dome a fifth.
 const MORE_POINTS: f32 = 100.0;
@@ -44,7 +44,7 @@ pub struct Fill {
 /// which grow where the new neighbours ask for it. Fill points follow loop by loop; their attributes come from the
 /// corners of their triangle. The attribute [`HOLE`] tags them with the id of their loop.
 ///
-/// A loop whose fill leaves more than a quarter of its points open is left as it was. Without any fill point the cloud comes
+/// A loop whose fill leaves a tenth of its points open is left as it was. Without any fill point the cloud comes
 /// back as it is.
 ///
 /// # Errors
@@ -144,6 +144,7 @@ fn grow(front: &mut Front, most: usize) -> (u32, usize) {
             front.add(c.position, c.normal, c.rho, c.corners);
         }
         relax(front);
+        front.tighten();
         rounds += 1;
     }
 }

@@ -23,6 +23,10 @@ const GROWTH: f32 = 1.4;
 const TRIES: u32 = 3;
 /// A ball shrinks to this many times the distance to the farthest member of the fan.
 const SHRUNK: f32 = 1.1;
+/// What the bound on the balls shrinks to in a round, and in spacings at the end. A round divides the distances in the fill
+/// by about √3.
+const TIGHTER: f32 = 0.85;
+const LEAST_BALL: f32 = 8.0;
 /// Directions this near to the end of a sector are at its end, radians: angles are rounded.
 const END: f32 = 1e-4;
 
@@ -48,7 +52,7 @@ pub(crate) struct Front {
     pub(crate) rim: Vec<u32>,
     /// The open sectors of each rim point: one, or several where the loop touches itself.
     sectors: Vec<Vec<Sector>>,
-    /// No ball is larger: it reaches across the loop.
+    /// No ball is larger; at first it reaches across the loop.
     largest: f32,
     params: RefineParams,
 }
@@ -123,6 +127,13 @@ impl Front {
         };
         let angles: Vec<f32> = rings.ring(p).iter().map(|e| e.angle).collect();
         sectors.iter().any(|sector| sector.widest_gap(&angles) > OPEN_PLACE)
+    }
+
+    /// Lowers the bound on the balls: the fill grows finer from round to round, and balls that see all of it take long.
+    pub(crate) fn tighten(&mut self) {
+        let coarsest = self.spacings.iter().copied().fold(0.0, f32::max);
+        self.largest = (TIGHTER * self.largest).max(LEAST_BALL * coarsest).min(self.largest);
+        self.level.radii.iter_mut().for_each(|ball| *ball = ball.min(self.largest));
     }
 
     /// How many fans leave a place open.
