@@ -15,7 +15,7 @@ const RIM_BALL: f32 = 1.02;
 /// The ball of a fill point, in ρ of its candidate.
 const FILL_BALL: f32 = 1.6;
 /// A fan with a wider gap misses a neighbour, radians (109°).
-const OPEN_FAN: f32 = 1.902_408_9;
+const OPEN_FAN: f32 = 1.902_408_8;
 /// A gap that is wider at the end is a place that was not filled, radians (150°).
 const OPEN_PLACE: f32 = 2.617_993_9;
 /// What an open fan's ball grows by, and how often.
@@ -223,7 +223,7 @@ impl Front {
 
 impl Sector {
     /// Angle from the beginning of the sector.
-    fn from_start(self, angle: f32) -> f32 {
+    fn turn_to(self, angle: f32) -> f32 {
         let turn = angle - self.start;
         let turn = if turn < 0.0 { turn + TAU } else { turn };
         if turn > TAU - END { 0.0 } else { turn }
@@ -231,13 +231,13 @@ impl Sector {
 
     /// Whether two directions lie in the sector, the first before the last.
     fn holds(self, first: f32, last: f32) -> bool {
-        let (first, last) = (self.from_start(first), self.from_start(last));
+        let (first, last) = (self.turn_to(first), self.turn_to(last));
         first < last && last <= self.width + END
     }
 
     /// The widest angle in the sector without any of these directions.
     fn widest_gap(self, angles: &[f32]) -> f32 {
-        let mut inside: Vec<f32> = angles.iter().map(|&a| self.from_start(a)).collect();
+        let mut inside: Vec<f32> = angles.iter().map(|&a| self.turn_to(a)).collect();
         inside.retain(|&a| a < self.width);
         inside.extend([0.0, self.width]);
         inside.sort_by(f32::total_cmp);

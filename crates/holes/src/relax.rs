@@ -9,7 +9,7 @@ use surfine_reference::neighborhood::Rings;
 /// Sweeps a round, and after how many of them the fans are made anew.
 const SWEEPS: u32 = 20;
 const SWEEPS_A_FAN: u32 = 5;
-/// Least value of n·(n + n_j): beyond a right angle or so the height that a neighbour asks for says little.
+/// Least value of `n·(n + n_j)`: beyond a right angle or so the height that a neighbour asks for says little.
 const LEAST_COSINE: f32 = 0.2;
 /// Share of the way to the middle of the neighbours along the surface.
 const TANGENTIAL: f32 = 0.5;

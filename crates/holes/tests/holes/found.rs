@@ -39,7 +39,10 @@ fn the_rim_of_a_hemisphere_is_undecided() {
     let found = loops(&without(&even(Shape::Sphere, 1500), Vec3::NEG_Z, 2f32.sqrt()));
     assert_eq!(found.len(), 1);
     assert_eq!(found[0].kind(), Kind::Undecided, "{}", found[0].turning);
-    assert!((found[0].span - 2.0).abs() < 0.1 && (found[0].perimeter - 6.28).abs() < 0.6);
+    assert!(
+        (found[0].span - 2.0).abs() < 0.1
+            && (found[0].perimeter - std::f32::consts::TAU).abs() < 0.6
+    );
 }
 
 #[test]
