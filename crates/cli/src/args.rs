@@ -1,9 +1,11 @@
 //! The command line.
 
 mod evaluate;
+mod holes;
 mod render;
 
 pub(crate) use evaluate::EvaluateArgs;
+pub(crate) use holes::{FillArgs, FillChoice, HolesArgs};
 pub(crate) use render::{ColorChoice, RenderArgs};
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -29,6 +31,7 @@ Examples:
   surfine refine scan.ply -o fine.ply
   surfine refine scan.ply -o fine.ply --levels 3 --backend gpu
   surfine refine scan.ply -o fine.ply --ascii --provenance --quiet
+  surfine refine scan.ply -o fine.ply --fill-holes all
   surfine refine scan.ply -o fine.ply --attribute intensity=nearest --attribute tx,ty,tz=unit
   surfine refine scan.ply -o fine.ply --json | jq .points_per_second
 
@@ -69,6 +72,10 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Refine a cloud: keep its points, insert new ones on the smooth surface through them
     Refine(RefineArgs),
+    /// List the boundary loops of a cloud: holes and outer rims
+    Holes(HolesArgs),
+    /// Fill holes with points as dense as those around them
+    Fill(FillArgs),
     /// Draw clouds as splats into a PNG file
     Render(RenderArgs),
     /// Measure how well a cloud shows a true surface
@@ -138,6 +145,10 @@ pub(crate) struct RefineArgs {
     /// The surface is closed: look for no boundary
     #[arg(long, conflicts_with_all = ["boundary_angle", "boundary_property"])]
     closed: bool,
+    /// Fill holes first: raised (those with radii raised by hand to close them), none, all (holes, no outer rims), ids as
+    /// `surfine holes` lists them, or max-span=X [default: raised; none with --literal]
+    #[arg(long, value_name = "WHICH", value_parser = holes::choice)]
+    fill_holes: Option<FillChoice>,
     /// How new points get a property: linear, nearest (corner), vote (of the corners) or unit, a direction, for three
     /// properties at once; may be given several times
     #[arg(long, value_name = "PROPERTY=RULE", value_parser = attribute_rule)]
@@ -238,6 +249,12 @@ impl RefineArgs {
     /// The backend, with what `--adapter` implies.
     pub(crate) fn backend(&self) -> BackendChoice {
         if self.adapter.is_some() { BackendChoice::Gpu } else { self.backend }
+    }
+
+    /// Which holes are filled; by the text none are, and raised radii close them.
+    pub(crate) fn fill_holes(&self) -> FillChoice {
+        let usual = if self.literal { FillChoice::None } else { FillChoice::Raised };
+        self.fill_holes.clone().unwrap_or(usual)
     }
 
     /// The parameters; each was checked when it was parsed.

@@ -6,6 +6,8 @@ mod backend;
 mod cloud;
 mod evaluate;
 mod files;
+mod fill;
+mod holes;
 mod paint;
 mod painter;
 mod refine;
@@ -25,6 +27,8 @@ fn main() -> ExitCode {
     let cli = Cli::from_command_line();
     let result = match &cli.command {
         Command::Refine(args) => refine::run(args),
+        Command::Holes(args) => holes::run(args),
+        Command::Fill(args) => fill::run(args),
         Command::Render(args) => render::run(args),
         Command::Evaluate(args) => evaluate::run(args),
         Command::Adapters(args) => adapters::run(args),

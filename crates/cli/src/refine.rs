@@ -2,9 +2,9 @@
 
 use crate::args::RefineArgs;
 use crate::backend::{self, Computed};
-use crate::report::{Report, Times};
+use crate::report::{Input, Report, Times};
 use crate::watch::Watch;
-use crate::{Failure, files, print};
+use crate::{Failure, files, fill, print};
 use std::time::{Duration, Instant};
 use surfine_points::ply::{self, PlyError, Provenance, Source};
 use surfine_points::{Convergence, Interpolation, PointSet, Values};
@@ -36,9 +36,13 @@ fn refine(args: &RefineArgs, watch: &Watch) -> Result<Report, Failure> {
     let (read, input) = timed(|| ply::read(&args.input));
     let (mut points, source) = input?;
     set_attribute_rules(args, &mut points)?;
+    check_boundary_property(args, &points)?;
     check_attributes(args, &points)?;
+    let choice = args.fill_holes();
+    let (fill, filled) = timed(|| fill::filled(&args.input, &points, &choice, watch));
+    let filled = filled?;
     watch.step("preparing".into());
-    let computed = backend::compute(args, &points, watch)?;
+    let computed = backend::compute(args, &filled.points, watch)?;
     watch.step(format!("writing {}", args.output.display()));
     let (write, written) = timed(|| write(args, &computed, &source));
     written?;
@@ -50,8 +54,9 @@ fn refine(args: &RefineArgs, watch: &Watch) -> Result<Report, Failure> {
         })
     });
     let (setup, refine) = (computed.setup, computed.refine);
-    let times = Times { read, setup, refine, write, stats };
-    Ok(Report::new(args, &points, &source, &computed, levels, times))
+    let times = Times { read, fill, setup, refine, write, stats };
+    let input = Input { points: &points, filled: &filled, source: &source };
+    Ok(Report::new(args, input, &computed, levels, times))
 }
 
 /// Gives the properties the rules that the user asks for.
@@ -81,6 +86,20 @@ fn set_attribute_rules(args: &RefineArgs, points: &mut PointSet) -> Result<(), F
         found.into_iter().for_each(|i| points.attributes[i].interpolation = *rule);
     }
     Ok(())
+}
+
+/// Refuses a property that is to mark the boundary and is not there.
+fn check_boundary_property(args: &RefineArgs, points: &PointSet) -> Result<(), Failure> {
+    match &args.boundary_property {
+        Some(name) if points.attribute(name).is_none() => {
+            let input = args.input.display();
+            let remedy = "check --boundary-property";
+            Err(Failure(format!(
+                "{input}: there is no property {name} to mark the boundary: {remedy}"
+            )))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn timed<T>(work: impl FnOnce() -> T) -> (Duration, T) {

@@ -2,23 +2,34 @@
 
 use crate::args::RefineArgs;
 use crate::backend::{Backend, Computed};
+use crate::fill::{Hole, fill_notes, summary};
 use crate::stats::Stats;
 use serde::{Serialize, Serializer};
 use std::fmt::{self, Display, Formatter};
 use std::path::Path;
 use std::time::Duration;
 use surfine::{Boundary, CurveCounts, LevelReport, Mode, Neighborhood, PointSet, RefineParams};
+use surfine_holes::Filled;
 use surfine_points::Convergence;
 use surfine_points::ply::Source;
 
 /// How long the steps took.
 pub(crate) struct Times {
     pub(crate) read: Duration,
+    pub(crate) fill: Duration,
     pub(crate) setup: Duration,
     pub(crate) refine: Duration,
     pub(crate) write: Duration,
     /// Measuring the levels, where that was asked for.
     pub(crate) stats: Duration,
+}
+
+/// The cloud that was read, and what was filled.
+#[derive(Clone, Copy)]
+pub(crate) struct Input<'a> {
+    pub(crate) points: &'a PointSet,
+    pub(crate) filled: &'a Filled,
+    pub(crate) source: &'a Source,
 }
 
 /// The summary. Its names are the keys of the JSON object.
@@ -38,6 +49,8 @@ pub(crate) struct Report {
     threads: Option<usize>,
     /// Bytes of the engine's buffers when the last level ended.
     device_bytes: Option<u64>,
+    /// The loops that were chosen to be filled.
+    holes: Vec<Hole>,
     params: Params,
     curves: Curves,
     levels: Vec<Level>,
@@ -99,6 +112,7 @@ struct Level {
 #[derive(Serialize)]
 struct Seconds {
     read: f64,
+    fill: f64,
     setup: f64,
     refine: f64,
     write: f64,
@@ -109,8 +123,7 @@ struct Seconds {
 impl Report {
     pub(crate) fn new(
         args: &RefineArgs,
-        points: &PointSet,
-        source: &Source,
+        read: Input<'_>,
         computed: &Computed,
         convergence: Option<Vec<Convergence>>,
         times: Times,
@@ -123,20 +136,21 @@ impl Report {
         Self {
             input: name(&args.input),
             output: name(&args.output),
-            points_in: points.len(),
+            points_in: read.points.len(),
             points_out: refined.points.len(),
             backend: if adapter.is_some() { "gpu" } else { "cpu" },
             adapter,
             mode: mode.name(),
             threads,
             device_bytes: refined.device_bytes,
+            holes: read.filled.fills.iter().map(Hole::new).collect(),
             params: Params::new(&args.params()),
             curves: Curves::new(refined.curves),
             levels: refined.reports.iter().map(Level::new).collect(),
             points_per_second: per_second(refined.parents.len(), times.refine),
             seconds: Seconds::new(&times, convergence.is_some()),
             stats: convergence.as_deref().map(Stats::new),
-            notes: notes(points, source, computed, mode),
+            notes: notes(args, read, computed, mode),
         }
     }
 }
@@ -229,20 +243,25 @@ impl Level {
 
 impl Seconds {
     fn new(times: &Times, measured: bool) -> Self {
-        let &Times { read, setup, refine, write, stats } = times;
-        let [read, setup, refine, write] = [read, setup, refine, write].map(|t| t.as_secs_f64());
-        Self { read, setup, refine, write, stats: measured.then_some(stats.as_secs_f64()) }
+        let &Times { read, fill, setup, refine, write, stats } = times;
+        let seconds = [read, fill, setup, refine, write].map(|t| t.as_secs_f64());
+        let [read, fill, setup, refine, write] = seconds;
+        let stats = measured.then_some(stats.as_secs_f64());
+        Self { read, fill, setup, refine, write, stats }
     }
 
     fn total(&self) -> f64 {
-        self.read + self.setup + self.refine + self.write + self.stats.unwrap_or(0.0)
+        let stats = self.stats.unwrap_or(0.0);
+        self.read + self.fill + self.setup + self.refine + self.write + stats
     }
 }
 
 /// Everything that was treated in a special way, with how many points it concerns.
-fn notes(points: &PointSet, source: &Source, computed: &Computed, mode: Mode) -> Vec<String> {
+fn notes(args: &RefineArgs, read: Input<'_>, computed: &Computed, mode: Mode) -> Vec<String> {
+    let Input { points, filled, source } = read;
     let mut notes: Vec<String> = computed.fallback.iter().cloned().collect();
     notes.extend(source.notes.iter().cloned());
+    notes.extend(fill_notes(&args.fill_holes(), filled));
     match points.non_unit_normals() {
         0 => {}
         count => notes.push(format!(
@@ -286,13 +305,15 @@ impl Display for Report {
             (Some(adapter), _) => writeln!(f, "backend  gpu, {adapter}, mode {}", self.mode)?,
             (None, threads) => writeln!(f, "backend  cpu, threads: {}", threads.unwrap_or(1))?,
         }
+        f.write_str(&summary(&self.holes))?;
         write!(f, "{}", self.curves)?;
         for (number, level) in (1..).zip(&self.levels) {
             write!(f, "level {number}  {level}")?;
         }
         self.stats.iter().try_for_each(|stats| write!(f, "{stats}"))?;
         write!(f, "{}", self.seconds)?;
-        let new = self.points_out - self.points_in;
+        let filled: usize = self.holes.iter().map(Hole::points).sum();
+        let new = self.points_out - self.points_in - filled;
         writeln!(
             f,
             "speed    {new} new points, {:.0} a second of refinement",
@@ -322,10 +343,10 @@ impl Display for Level {
 
 impl Display for Seconds {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let Self { read, setup, refine, write, stats } = self;
+        let Self { read, fill, setup, refine, write, stats } = self;
         write!(
             f,
-            "time     {:.3} s: read {read:.3}, set up {setup:.3}, refine {refine:.3}, write {write:.3}",
+            "time     {:.3} s: read {read:.3}, fill {fill:.3}, set up {setup:.3}, refine {refine:.3}, write {write:.3}",
             self.total()
         )?;
         stats.iter().try_for_each(|stats| write!(f, ", stats {stats:.3}"))?;

@@ -2,5 +2,6 @@
 
 mod evaluate;
 mod folder;
+mod holes;
 mod refine;
 mod render;

@@ -7,7 +7,7 @@ mod blue_noise;
 mod radii;
 mod surface;
 
-pub use radii::natural_radii;
+pub use radii::{natural_radii, natural_radii_of};
 pub use surface::Shape;
 
 use std::collections::HashMap;

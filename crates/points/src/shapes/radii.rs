@@ -34,11 +34,21 @@ const PROBES: usize = 64;
 /// # Panics
 /// If there are more positions than normals.
 pub fn natural_radii(positions: &[Vec3], normals: &[Vec3]) -> Vec<f32> {
+    let all: Vec<u32> = (0..positions.len() as u32).collect();
+    natural_radii_of(&all, positions, normals)
+}
+
+/// The [`natural_radii`] of some points, by index, among all.
+///
+/// # Panics
+/// If there are more positions than normals, or an index is not below their number.
+pub fn natural_radii_of(points: &[u32], positions: &[Vec3], normals: &[Vec3]) -> Vec<f32> {
     assert!(positions.len() <= normals.len(), "give one normal a position");
     let cloud = Cloud::new(positions, normals);
-    (0..positions.len())
-        .into_par_iter()
-        .map(|i| {
+    points
+        .par_iter()
+        .map(|&i| {
+            let i = i as usize;
             let reach = cloud.farthest_natural(i).or_else(|| cloud.nearest_place(i));
             let radius = reach.map_or(1.0, |distance| RADIUS_FACTOR * distance);
             radius.min(f64::from(f32::MAX)) as f32
