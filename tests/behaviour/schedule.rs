@@ -4,6 +4,7 @@
 //! borders, and radii that reach far beyond the natural neighbours.
 
 use rayon::ThreadPoolBuilder;
+use surfine_features::Records;
 use surfine_points::shapes::{Shape, hexagonal_grid, icosphere, square_grid};
 use surfine_points::{Neighborhood, PointSet, RefineParams, Refined};
 use surfine_reference::coloring::{Classes, coloring};
@@ -127,7 +128,7 @@ fn number_of_threads_is_invisible() {
 
 /// The insertion of one level under classes of the caller's choice.
 fn insert(points: &PointSet, classes: impl Fn(&Classes) -> Classes, order: Order) -> Insertion {
-    let level = Level::new(points);
+    let level = Level::new(&Records::split(points).expect("the points are fit"));
     let params = levels(1);
     let (state, _) = run_level(&level, &params, order, &mut |_| ());
     assert_eq!(state.classes, coloring(&state.conflicts));
