@@ -6,9 +6,12 @@
 
 mod attributes;
 mod bound;
+mod boundaries;
 mod clouds;
 mod coincident;
 mod convergence;
+mod creases;
+mod curves;
 mod degenerate;
 mod measure;
 mod old_points;
