@@ -14,6 +14,7 @@ mod creases;
 mod curves;
 mod degenerate;
 mod measure;
+mod odd_curves;
 mod old_points;
 mod quality;
 mod rules;
