@@ -168,10 +168,12 @@ fn short_chains_are_no_boundary() {
         assert_eq!(features.records.len(), if segments == 0 { 0 } else { points });
     }
     // Three points in a circle are a chain of three, however often one goes round.
-    let (records, gaps) = ring_of(3);
-    let mut features = Features::default();
-    features.add_boundary(cloud(&records), &gaps);
-    println!("{} segments around a triangle", features.segments.len());
+    for (points, segments) in [(3, 0), (4, 4)] {
+        let (records, gaps) = ring_of(points);
+        let mut features = Features::default();
+        features.add_boundary(cloud(&records), &gaps);
+        assert_eq!(features.segments.len(), segments, "around {points} points");
+    }
 }
 
 #[test]
