@@ -123,10 +123,10 @@ fn all_steps() -> Vec<Step> {
         for refine in variants() {
             let mut level = first_level(&cloud.points, &refine);
             for number in 1..=2 {
-                level.begin_step();
+                level.begin_step(refine.rules);
                 let has_curves = level.curves.is_some();
                 assert!(has_curves || !names.contains(&cloud.name), "{} has no curves", cloud.name);
-                let splits = has_curves && number == 2;
+                let splits = has_curves && Features::splits_at(number, refine.rules);
                 assert_eq!(!level.curve_points.is_empty(), splits, "{} {number}", cloud.name);
                 let (state, _) = run_level(&level, &refine, Order::Together, &mut |_| ());
                 let name = format!("{} {} step {number}", cloud.name, describe(&refine));

@@ -258,6 +258,7 @@ fn folded_points_have_the_normals_and_the_largest_radius_of_their_sides() {
         radii,
         parents: new.iter().map(|p| p.parents).collect(),
         level_sizes: vec![8, 8 + new.len()],
+        level_radii: Vec::new(),
     };
     let folded = fold(&points, &split, &features, &refined, None);
     assert_eq!(folded.level_sizes, [4, 4 + 6]);
