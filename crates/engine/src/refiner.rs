@@ -305,7 +305,8 @@ impl Refiner {
     ) -> Result<LevelReport, Error> {
         let mut step = self.step(refine, params, on_curves)?;
         let counters = if let Some(Rings { counters, slots }) = rings {
-            (step.params.slots, step.params.fan_slots) = (slots, slots);
+            step.params.fan_slots = slots;
+            step.params.slots = slots + on_curves.new;
             counters
         } else {
             clock.start("grid");
