@@ -45,7 +45,7 @@ impl Gap {
     }
 }
 
-/// Whether a point with this gap may lie on a boundary: if it is wider than θ_b, or if the input marks the point.
+/// Whether a point with this gap may lie on a boundary: if it is wider than `θ_b`, or if the input marks the point.
 pub fn may_be_boundary(points: &PointSet, params: &RefineParams, gap: &Gap) -> bool {
     let point = gap.point as usize;
     match &params.boundary {

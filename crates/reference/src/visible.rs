@@ -170,7 +170,7 @@ impl<'a> View<'a> {
         let mut fences = Vec::new();
         if let (Some(curves), true) = (&level.curves, rules.separating_segments) {
             curves.grid.visit_ball(center.position, (AROUND + 0.5) * radius + curves.reach, |s| {
-                fences.push(s)
+                fences.push(s);
             });
         }
         Self { curves: level.curves.as_ref(), center, fences, radius, rules }
