@@ -1,12 +1,10 @@
 //! Creases that no modeller should make, and files have.
 
 use surfine_points::shapes::{Outlined, natural_radii, square_grid};
-use surfine_points::{
-    Attribute, Boundary, CurveCounts, Invalid, PointSet, RefineParams, Refined, Values, Vec3,
-};
+use surfine_points::{Attribute, CurveCounts, Invalid, PointSet, Refined, Values, Vec3};
 use surfine_reference::Error;
 
-use crate::clouds::{levels, refine};
+use crate::clouds::{closed, levels, refine};
 use crate::curves::{even, further_normals, new_points, set_float};
 use crate::degenerate::assert_sound;
 use crate::measure::{assert_same_bytes, vector_bits};
@@ -27,10 +25,6 @@ fn set_second_normal(points: &mut PointSet, i: usize, n: Vec3) {
 }
 
 /// Without boundaries, whose counts would only distract.
-fn closed(levels: u32) -> RefineParams {
-    RefineParams { levels, boundary: Boundary::None, ..RefineParams::default() }
-}
-
 fn refine_closed(points: &PointSet, steps: u32) -> Refined {
     let refined = refine(points, &closed(steps));
     assert_sound(&refined);

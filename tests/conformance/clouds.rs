@@ -51,18 +51,20 @@ pub(crate) fn small_outlined() -> Vec<Cloud> {
 pub(crate) fn whole_outlined() -> Vec<(Cloud, u32)> {
     let even = |shape, seed| sample_outlined(shape, Sampling::BlueNoise, 300, seed);
     let random = |shape, seed| sample_outlined(shape, Sampling::Random, 300, seed);
-    let mut clouds = vec![
+    vec![
         (Cloud::new("cube", even(Outlined::Cube, 1)), 4),
         (Cloud::new("records of a cube", one_record_a_normal(&even(Outlined::Cube, 2))), 2),
         (Cloud::new("cylinder", even(Outlined::Cylinder, 3)), 2),
         (Cloud::new("hemisphere", random(Outlined::Hemisphere, 4)), 2),
         (Cloud::new("saddle with rim", even(Outlined::SaddleRim, 5)), 2),
         (Cloud::new("hole", random(Outlined::Hole, 6)), 2),
-    ];
-    for file in ["points/fandisk-3000-crease", "analytic/hemisphere-800-boundary"] {
-        clouds.extend(shared(file).map(|cloud| (cloud, 2)));
-    }
-    clouds
+    ]
+}
+
+/// Models with creases and boundaries, where they are at hand.
+pub(crate) fn shared_outlined() -> Vec<Cloud> {
+    let files = ["points/fandisk-3000-crease", "analytic/hemisphere-800-boundary"];
+    files.into_iter().filter_map(shared).collect()
 }
 
 /// Clouds for whole runs, with the number of levels.
