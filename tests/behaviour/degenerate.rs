@@ -86,7 +86,7 @@ fn points_on_a_line_stay_as_they_are() {
     let mut slanted = cloud.clone();
     slanted.positions.iter_mut().for_each(|p| *p = direction * p.x);
     slanted.normals.fill(direction.any_orthonormal_vector());
-    let refined = refine(&slanted, &levels(2));
+    let refined = refine(&slanted, &closed(2));
     assert_sound(&refined);
     for x in &refined.points.positions {
         let off = x.cross(direction.normalize()).length();

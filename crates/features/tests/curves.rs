@@ -270,8 +270,8 @@ fn folded_points_have_the_normals_and_the_largest_radius_of_their_sides() {
     let Some(Values::F32(second)) = folded.points.attribute("nx2").map(|a| &a.values) else {
         panic!("nx2 is gone")
     };
-    for i in 4..10 {
-        let sides = [folded.points.normals[i].x, second[i]];
+    for (normal, second) in folded.points.normals.iter().zip(second).skip(4) {
+        let sides = [normal.x, *second];
         assert!((sides[0] + sides[1] - 1.0).abs() < 1e-6, "one side each: {sides:?}");
     }
     assert_eq!(folded.points.attribute("kind").map(|a| &a.values), Some(&Values::U8(vec![1; 10])));
