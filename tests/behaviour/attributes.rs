@@ -3,7 +3,7 @@
 use surfine_points::shapes::{Shape, square_grid};
 use surfine_points::{Attribute, Interpolation, PointSet, Refined, Values, Vec3};
 
-use crate::clouds::{blue_noise, jittered_grid, levels, random, refine};
+use crate::clouds::{blue_noise, closed, jittered_grid, levels, random, refine};
 
 /// A cloud with one attribute, refined.
 fn refined_with(mut points: PointSet, name: &str, values: Values) -> Refined {
@@ -115,7 +115,9 @@ fn linear_fields_are_kept_on_a_plane() {
         points.positions.iter().map(|p| 2.0 * f64::from(p.x) - 3.0 * f64::from(p.y)).collect()
     };
     let values = Values::F64(field(&cloud));
-    let refined = refined_with(cloud, "height", values);
+    cloud.attributes = vec![Attribute::new("height", values)];
+    // On a rim that is curved new points lie off the chord from which they have their values.
+    let refined = refine(&cloud, &closed(2));
     let Values::F64(values) = &refined.points.attributes[0].values else {
         panic!("the attribute changed its type");
     };

@@ -3,11 +3,16 @@
 use std::path::Path;
 
 use surfine_points::shapes::{Sampling, Shape, natural_radii, sample, square_grid};
-use surfine_points::{PointSet, RefineParams, Refined, Rules, Vec3, ply};
+use surfine_points::{Boundary, PointSet, RefineParams, Refined, Rules, Vec3, ply};
 
 /// Default parameters at a number of levels.
 pub(crate) fn levels(levels: u32) -> RefineParams {
     RefineParams { levels, ..RefineParams::default() }
+}
+
+/// The same for a surface that is taken to be closed, so that nothing is put on its rim.
+pub(crate) fn closed(levels: u32) -> RefineParams {
+    RefineParams { levels, boundary: Boundary::None, ..RefineParams::default() }
 }
 
 /// That many levels by the paper's text alone.

@@ -6,11 +6,15 @@
 
 mod attributes;
 mod bound;
+mod boundaries;
 mod clouds;
 mod coincident;
 mod convergence;
+mod creases;
+mod curves;
 mod degenerate;
 mod measure;
+mod odd_curves;
 mod old_points;
 mod quality;
 mod rules;

@@ -1,9 +1,12 @@
 //! What a refinement keeps, and where it puts what it adds.
 
-use surfine_points::shapes::{Shape, square_grid};
-use surfine_points::{Attribute, DVec3, PointSet, RefineParams, Refined, Rules, Values, Vec3};
+use surfine_points::shapes::{Outlined, Shape, square_grid};
+use surfine_points::{
+    Attribute, Boundary, DVec3, PointSet, RefineParams, Refined, Rules, Values, Vec3,
+};
 
-use crate::clouds::{blue_noise, jittered_grid, levels, random, refine, with_uneven_radii};
+use crate::clouds::{blue_noise, closed, jittered_grid, levels, random, refine, with_uneven_radii};
+use crate::curves::{bytes, even};
 use crate::measure::{assert_same_bytes, median, vector_bits};
 
 /// Clouds of all kinds, small.
@@ -76,9 +79,10 @@ fn no_level_leaves_the_input_as_it_is() {
 
 #[test]
 fn single_steps_add_up_to_many() {
-    // The radii of a later run's input are no input radii.
+    // The radii of a later run's input are no input radii, and its first step would be an odd one again, which splits no
+    // rim.
     let rules = Rules { first_radii: false, ..Rules::ALL };
-    let levels = |n| RefineParams { rules, ..levels(n) };
+    let levels = |n| RefineParams { rules, ..closed(n) };
     for (name, cloud) in clouds() {
         let at_once = refine(&cloud, &levels(3));
         let mut steps = refine(&cloud, &levels(0));
@@ -112,8 +116,28 @@ fn check_bookkeeping(refined: &Refined, name: &str) {
 #[test]
 fn parents_are_three_different_points_of_earlier_levels() {
     for (name, cloud) in clouds() {
-        check_bookkeeping(&refine(&cloud, &levels(3)), name);
+        check_bookkeeping(&refine(&cloud, &closed(3)), name);
     }
+}
+
+#[test]
+fn parents_on_a_rim_are_the_ends_of_its_segment_the_nearer_twice() {
+    let cloud = even(Outlined::Hemisphere, 300, 1);
+    let boundary = Boundary::Marked("rim".into());
+    let refined = refine(&cloud, &RefineParams { boundary, ..levels(2) });
+    let rim = bytes(&refined.points, "rim");
+    let mut seen = 0;
+    for (i, &[a, b, c]) in refined.parents.iter().enumerate() {
+        let (new, x) = (cloud.len() + i, &refined.points.positions);
+        assert_eq!(a == b, rim[new] == 1, "corners of new point {i}: {a} {b} {c}");
+        if a == b {
+            let [near, far] = [a, c].map(|p| (x[p as usize] - x[new]).length());
+            assert!(near < 0.6 * far, "new rim point {i}: {near} and {far}");
+            assert_eq!([rim[a as usize], rim[c as usize]], [1, 1]);
+            seen += 1;
+        }
+    }
+    assert!(seen > 40, "{seen} new rim points");
 }
 
 #[test]

@@ -6,7 +6,7 @@ use surfine_points::{PointSet, Refined, Vec3};
 use crate::clouds::{blue_noise, levels, random, refine};
 use crate::measure::{assert_same_bytes, growths, mean};
 
-fn scaled(points: &PointSet, factor: f32) -> PointSet {
+pub(crate) fn scaled(points: &PointSet, factor: f32) -> PointSet {
     let mut points = points.clone();
     points.positions.iter_mut().for_each(|p| *p *= factor);
     points.radii.iter_mut().for_each(|r| *r *= factor);

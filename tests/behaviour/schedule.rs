@@ -4,7 +4,8 @@
 //! borders, and radii that reach far beyond the natural neighbours.
 
 use rayon::ThreadPoolBuilder;
-use surfine_points::shapes::{Shape, hexagonal_grid, icosphere, square_grid};
+use surfine_features::Records;
+use surfine_points::shapes::{Outlined, Shape, hexagonal_grid, icosphere, square_grid};
 use surfine_points::{Neighborhood, PointSet, RefineParams, Refined};
 use surfine_reference::coloring::{Classes, coloring};
 use surfine_reference::insertion::{Insertion, Order, Stage, insertion};
@@ -13,6 +14,7 @@ use surfine_reference::{Level, refine_with, run_level};
 use crate::clouds::{
     blue_noise, jittered_grid, levels, random, refine, with_radii_times, with_uneven_radii,
 };
+use crate::curves::{even, uneven};
 use crate::measure::assert_same_bytes;
 
 /// The accurate neighbourhood, the fuzzy one, and all four simplifications, at 3 levels.
@@ -113,11 +115,35 @@ fn order_is_invisible_where_small_radii_make_the_cells_small() {
 }
 
 #[test]
+fn order_is_invisible_with_creases_and_boundaries() {
+    for shape in Outlined::ALL {
+        assert_order_is_invisible(&even(shape, 300, 1), &format!("even {shape}"));
+        assert_order_is_invisible(&uneven(shape, 300, 2), &format!("random {shape}"));
+        for factor in [1.5, 2.0] {
+            let cloud = with_radii_times(uneven(shape, 200, 3), factor);
+            let name = format!("random {shape}, radii times {factor}");
+            assert_order_is_invisible(&cloud, &name);
+        }
+    }
+}
+
+#[test]
 fn number_of_threads_is_invisible() {
-    let cloud = with_uneven_radii(random(Shape::Torus, 300, 4), 4);
+    let clouds = [
+        with_uneven_radii(random(Shape::Torus, 300, 4), 4),
+        uneven(Outlined::Cube, 300, 4),
+        uneven(Outlined::Hole, 300, 4),
+    ];
+    for cloud in clouds {
+        assert_threads_are_invisible(&cloud);
+    }
+}
+
+#[track_caller]
+fn assert_threads_are_invisible(cloud: &PointSet) {
     let with_threads = |threads| {
         let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.expect("threads can be started").install(|| refine(&cloud, &levels(3)))
+        pool.expect("threads can be started").install(|| refine(cloud, &levels(3)))
     };
     let one = with_threads(1);
     for threads in [2, 3] {
@@ -127,7 +153,7 @@ fn number_of_threads_is_invisible() {
 
 /// The insertion of one level under classes of the caller's choice.
 fn insert(points: &PointSet, classes: impl Fn(&Classes) -> Classes, order: Order) -> Insertion {
-    let level = Level::new(points);
+    let level = Level::new(&Records::split(points).expect("the points are fit"));
     let params = levels(1);
     let (state, _) = run_level(&level, &params, order, &mut |_| ());
     assert_eq!(state.classes, coloring(&state.conflicts));

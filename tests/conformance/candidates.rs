@@ -7,7 +7,7 @@ use crate::tolerance::{NORMAL, POSITION};
 fn candidates_are_those_of_the_reference() {
     let mut device = device();
     for step in steps() {
-        let slots = step.state.rings.len();
+        let slots = step.state.candidates.len();
         let points = device.buffer("points", &step.points());
         let starts = device.buffer("starts", &step.state.rings.starts);
         let entries = device.buffer("entries", &step.ring_entries());
@@ -15,8 +15,12 @@ fn candidates_are_those_of_the_reference() {
         let normals = device.output::<[f32; 4]>("normals", slots);
         let (owners, states) =
             (device.output::<u32>("owners", slots), device.output::<u32>("states", slots));
-        let buffers = [&points, &starts, &entries, &positions, &normals, &owners, &states];
-        device.run(step.run("candidates", [0; 4], step.level.len()), &buffers);
+        let curves = device.buffer("curves", &step.curves());
+        let inputs = [&points, &starts, &entries];
+        let outputs = [&positions, &normals, &owners, &states, &curves];
+        let buffers = [&inputs[..], &outputs].concat();
+        let invocations = step.level.len().max(step.level.curve_points.len());
+        device.run(step.run("candidates", [0; 4], invocations), &buffers);
 
         let what = |column| format!("{}: candidate {column}", step.name);
         let scale = step.state.candidates.rho.iter().copied().fold(0.0, f32::max);
@@ -29,8 +33,6 @@ fn candidates_are_those_of_the_reference() {
         let owners: Vec<u32> = device.read(&owners, slots);
         must(compare_equal(&what("owners"), &step.state.candidates.owners, &owners));
         let states: Vec<u32> = device.read(&states, slots);
-        let exists = |s| if step.state.candidates.exists(s) { 0 } else { u32::MAX };
-        let expected: Vec<u32> = (0..slots).map(exists).collect();
-        must(compare_equal(&what("states"), &expected, &states));
+        must(compare_equal(&what("states"), &step.initial_states(), &states));
     }
 }

@@ -1,9 +1,11 @@
 //! The clouds that conformance is shown on.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use surfine::{Neighborhood, PointSet, RefineParams, Rules, Vec3};
 use surfine_points::ply;
-use surfine_points::shapes::{Sampling, Shape, icosphere, sample, square_grid};
+use surfine_points::shapes::{
+    Outlined, Sampling, Shape, icosphere, one_record_a_normal, sample, sample_outlined, square_grid,
+};
 
 /// A named cloud.
 pub(crate) struct Cloud {
@@ -32,6 +34,39 @@ pub(crate) fn small() -> Vec<Cloud> {
     ]
 }
 
+/// Clouds with creases, corners and boundaries for single kernels.
+pub(crate) fn small_outlined() -> Vec<Cloud> {
+    let cloud = |shape, sampling, seed| sample_outlined(shape, sampling, 160, seed);
+    let (even, uneven) = (Sampling::BlueNoise, Sampling::Random);
+    vec![
+        Cloud::new("cube", cloud(Outlined::Cube, even, 1)),
+        // Random points beside creases have so many of these in their balls that a software driver cuts its loops.
+        Cloud::new("cylinder", one_record_a_normal(&cloud(Outlined::Cylinder, even, 2))),
+        Cloud::new("saddle with rim", cloud(Outlined::SaddleRim, even, 3)),
+        Cloud::new("hole", cloud(Outlined::Hole, uneven, 4)),
+    ]
+}
+
+/// Clouds with creases, corners and boundaries for whole runs, with the number of levels.
+pub(crate) fn whole_outlined() -> Vec<(Cloud, u32)> {
+    let even = |shape, seed| sample_outlined(shape, Sampling::BlueNoise, 300, seed);
+    let random = |shape, seed| sample_outlined(shape, Sampling::Random, 300, seed);
+    vec![
+        (Cloud::new("cube", even(Outlined::Cube, 1)), 4),
+        (Cloud::new("records of a cube", one_record_a_normal(&even(Outlined::Cube, 2))), 2),
+        (Cloud::new("cylinder", even(Outlined::Cylinder, 3)), 2),
+        (Cloud::new("hemisphere", random(Outlined::Hemisphere, 4)), 2),
+        (Cloud::new("saddle with rim", even(Outlined::SaddleRim, 5)), 2),
+        (Cloud::new("hole", random(Outlined::Hole, 6)), 2),
+    ]
+}
+
+/// Models with creases and boundaries, where they are at hand.
+pub(crate) fn shared_outlined() -> Vec<Cloud> {
+    let files = ["points/fandisk-3000-crease", "analytic/hemisphere-800-boundary"];
+    files.into_iter().filter_map(shared).collect()
+}
+
 /// Clouds for whole runs, with the number of levels.
 pub(crate) fn whole() -> Vec<(Cloud, u32)> {
     let mut clouds = vec![
@@ -51,13 +86,7 @@ pub(crate) fn whole() -> Vec<(Cloud, u32)> {
     for (file, levels) in
         [("igea-600-uniform", 4), ("nefertiti-3500-random", 3), ("armadillo-10000-uniform", 3)]
     {
-        let path = shared_data().join(format!("points/{file}.ply"));
-        if path.exists() {
-            let (points, _) = ply::read(&path).expect("the shared file is sound");
-            clouds.push((Cloud::new(file, points), levels));
-        } else {
-            println!("{file} is not there: the generated clouds stand alone");
-        }
+        clouds.extend(shared(&format!("points/{file}")).map(|cloud| (cloud, levels)));
     }
     clouds
 }
@@ -78,9 +107,16 @@ pub(crate) fn describe(params: &RefineParams) -> String {
     format!("{neighborhood:?}, simplified {simplified}, {rules}")
 }
 
-/// Models that are too large or too unfree for the repository, where they are at hand.
-fn shared_data() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data")
+/// A model that is too large or too unfree for the repository, where it is at hand.
+fn shared(file: &str) -> Option<Cloud> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
+    let path = folder.join(format!("{file}.ply"));
+    if !path.exists() {
+        println!("{file} is not there: the generated clouds stand alone");
+        return None;
+    }
+    let (points, _) = ply::read(&path).expect("the shared file is sound");
+    Some(Cloud::new(file, points))
 }
 
 fn scaled_radii(mut points: PointSet, factor: f32) -> PointSet {

@@ -9,7 +9,7 @@ fn classes_are_those_of_the_reference_after_enough_rounds() {
     let mut device = device();
     for step in steps() {
         let n = step.level.len();
-        let graph = ConflictBuffers::compute(&mut device, &step);
+        let graph = ConflictBuffers::compute(&mut device, step);
         let blocks = device.buffer("blocks", &graph.blocks);
         let entries = device.buffer("entries", &graph.entries);
         let heads = device.buffer("heads", &graph.heads);

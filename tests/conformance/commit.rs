@@ -1,27 +1,27 @@
 //! The commit kernels on the reference's decisions.
 
-use crate::harness::{compare, compare_equal, device, must, steps};
+use crate::harness::{FREE, USED, compare, compare_equal, device, must, steps};
 use crate::tolerance::{NORMAL, POSITION};
-use surfine::records::Point;
+use surfine::records::{LEVEL_BITS, Point};
 use surfine_reference::commit::commit;
 
 #[test]
 fn the_next_level_is_that_of_the_reference() {
     let mut device = device();
     for step in steps() {
-        let (n, slots) = (step.level.len(), step.state.rings.len());
+        let (n, slots) = (step.level.len(), step.state.candidates.len());
         let insertion = &step.state.insertion;
         let mut expected = step.level.clone();
         let state = &step.state;
         let parents = commit(&mut expected, state, &step.refine);
 
-        // A state from 1 on is one more than the class that inserted the slot.
-        let of_slot = |s: usize| match (insertion.inserted[s], state.candidates.exists(s)) {
-            (true, _) => 1,
-            (false, true) => u32::MAX - 1,
-            (false, false) => u32::MAX,
-        };
-        let states = device.buffer("states", &(0..slots).map(of_slot).collect::<Vec<u32>>());
+        let mut states = step.initial_states();
+        for (own, &inserted) in states.iter_mut().zip(&insertion.inserted) {
+            if *own == FREE {
+                *own = if inserted { 2 } else { USED };
+            }
+        }
+        let states = device.buffer("states", &states);
         let indices = device.output::<u32>("indices", slots + 1);
         device.run(step.run("commit_count", [0; 4], slots), &[&states, &indices]);
         let mut summed: Vec<u32> = device.read(&indices, slots + 1);
@@ -47,7 +47,8 @@ fn the_next_level_is_that_of_the_reference() {
         let found_parents = device.output::<[u32; 3]>("parents", parents.len());
         let rings = [&points, &ring_starts, &ring_entries];
         let candidates = [&positions, &normals, &owners];
-        let outputs = [&indices, &radii, &found_parents];
+        let curves = device.buffer("curves", &step.curves());
+        let outputs = [&indices, &radii, &found_parents, &curves];
         let buffers = [&rings[..], &candidates, &outputs].concat();
         device.run(step.run("commit", [0; 4], n.max(slots)), &buffers);
 
@@ -69,7 +70,9 @@ fn the_next_level_is_that_of_the_reference() {
         must(compare(&what("radii"), &expected.radii, &radii, crate::tolerance::EXACT, 1.0));
         let levels: Vec<u32> = found.iter().map(|p| p.level).collect();
         let new = step.level.step + 1;
-        let expected: Vec<u32> = (0..found.len()).map(|i| if i < n { 0 } else { new }).collect();
+        let record = |i: usize| expected.seen(i).record.wrapping_add(1) << LEVEL_BITS;
+        let level = |i: usize| record(i) | if i < n { 0 } else { new };
+        let expected: Vec<u32> = (0..found.len()).map(level).collect();
         must(compare_equal(&what("levels"), &expected, &levels));
     }
 }

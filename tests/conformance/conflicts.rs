@@ -61,7 +61,7 @@ impl ConflictBuffers {
 fn the_graph_is_that_of_the_reference() {
     let mut device = device();
     for step in steps() {
-        let found = ConflictBuffers::compute(&mut device, &step);
+        let found = ConflictBuffers::compute(&mut device, step);
         for p in 0..step.level.len() {
             let what = format!("{}: conflicts of {p}", step.name);
             // Equal lists also say that no conflict is noted twice.

@@ -46,24 +46,17 @@ fn points_and_candidates_are_sorted_by_cell() {
     let mut device = device();
     for step in steps() {
         let points = device.buffer("points", &step.points());
-        check(&mut device, &step, "grid_points", &points, step.level.len(), &step.state.grid);
+        check(&mut device, step, "grid_points", &points, step.level.len(), &step.state.grid);
         let candidates = device.buffer("candidates", &step.candidate_positions());
-        let slots = step.state.rings.len();
-        check(
-            &mut device,
-            &step,
-            "grid_candidates",
-            &candidates,
-            slots,
-            &step.state.candidate_grid,
-        );
+        let slots = step.state.candidates.len();
+        check(&mut device, step, "grid_candidates", &candidates, slots, &step.state.candidate_grid);
     }
 }
 
 #[test]
 fn prefix_sums_of_three_layers_and_of_a_part() {
     let mut device = device();
-    let step = steps().remove(0);
+    let step = &steps()[0];
     let mut random = fastrand::Rng::with_seed(3);
     let values: Vec<u32> = (0..9000).map(|_| random.u32(0..1000)).collect();
     // Only values 500 to 8999 are summed; 8500 values make 133 blocks, and these make 3.

@@ -1,24 +1,27 @@
 //! One device for all tests, single kernels on it, and the comparator.
 
-use crate::clouds::{describe, small, variants};
+use crate::clouds::{describe, small, small_outlined, variants};
 use crate::tolerance::{EXACT, Tolerance};
 use std::collections::HashMap;
-use std::sync::{Mutex, MutexGuard, OnceLock};
-use surfine::records::{Params, Point};
+use std::sync::{LazyLock, Mutex, MutexGuard, OnceLock};
+use surfine::curves::table;
+use surfine::records::{LEVEL_BITS, Params, Point};
 use surfine::shaders::SHADERS;
 use surfine::testing::{Buffer, Commands, Uniforms, constants, read};
-use surfine::{Gpu, Kernel, Mode, RefineParams, Refiner};
-use surfine_points::Grid;
+use surfine::{Boundary, Gpu, Kernel, Mode, RefineParams, Refiner};
+use surfine_features::{Features, Records};
+use surfine_points::{Grid, PointSet};
+use surfine_reference::boundary::boundary;
 use surfine_reference::commit::commit;
 use surfine_reference::insertion::Order;
-use surfine_reference::{Level, LevelState, run_level};
+use surfine_reference::neighborhood::neighborhood;
+use surfine_reference::{Level, LevelState, point_grid, run_level};
 
 /// The device with everything that tests share.
 pub(crate) struct Device {
     pub refiner: Refiner,
     uniforms: Uniforms,
-    /// Kernels compiled so far, by name and constants.
-    /// By name and the values of the constants.
+    /// Kernels compiled so far, by name and the values of the constants.
     kernels: HashMap<(String, Vec<bool>), Kernel>,
 }
 
@@ -84,12 +87,12 @@ impl Device {
 
     /// Runs one kernel once.
     pub(crate) fn run(&mut self, run: Run<'_>, buffers: &[&Buffer]) {
-        let key =
-            (run.kernel.to_owned(), constants(run.refine).iter().map(|c| c.1 == 1.0).collect());
+        let constants = constants(run.refine, run.params.records > 0);
+        let key = (run.kernel.to_owned(), constants.iter().map(|c| c.1 == 1.0).collect());
         let gpu = self.refiner.gpu();
         let kernel = self.kernels.entry(key).or_insert_with(|| {
             let shader = SHADERS.iter().find(|s| s.name == run.kernel).expect("it is in the table");
-            Kernel::new(gpu, shader, &constants(run.refine)).expect("the kernel compiles")
+            Kernel::new(gpu, shader, &constants).expect("the kernel compiles")
         });
         self.uniforms.set(gpu, &run.params);
         let mut commands = Commands::new(gpu, &self.uniforms);
@@ -106,13 +109,25 @@ pub(crate) struct Step {
     pub state: LevelState,
 }
 
-/// The first and the second step of every small cloud in every variant.
-pub(crate) fn steps() -> Vec<Step> {
+/// The first and the second step of every small cloud in every variant. The second one splits curves.
+pub(crate) fn steps() -> &'static [Step] {
+    static STEPS: LazyLock<Vec<Step>> = LazyLock::new(all_steps);
+    &STEPS
+}
+
+fn all_steps() -> Vec<Step> {
     let mut steps = Vec::new();
-    for cloud in small() {
+    let outlined = small_outlined();
+    let names: Vec<String> = outlined.iter().map(|cloud| cloud.name.clone()).collect();
+    for cloud in small().into_iter().chain(outlined) {
         for refine in variants() {
-            let mut level = Level::new(&cloud.points);
+            let mut level = first_level(&cloud.points, &refine);
             for number in 1..=2 {
+                level.begin_step(refine.rules);
+                let has_curves = level.curves.is_some();
+                assert!(has_curves || !names.contains(&cloud.name), "{} has no curves", cloud.name);
+                let splits = has_curves && Features::splits_at(number, refine.rules);
+                assert_eq!(!level.curve_points.is_empty(), splits, "{} {number}", cloud.name);
                 let (state, _) = run_level(&level, &refine, Order::Together, &mut |_| ());
                 let name = format!("{} {} step {number}", cloud.name, describe(&refine));
                 let mut next = level.clone();
@@ -125,12 +140,45 @@ pub(crate) fn steps() -> Vec<Step> {
     steps
 }
 
+/// The input with its creases and boundaries.
+pub(crate) fn first_level(points: &PointSet, refine: &RefineParams) -> Level {
+    let mut level = Level::new(&Records::split(points).expect("the cloud is sound"));
+    if refine.boundary != Boundary::None {
+        let rings = neighborhood(&level, &point_grid(&level), refine);
+        boundary(&mut level, &rings, points, refine);
+    }
+    level
+}
+
 impl Step {
+    /// Creases and boundaries, if there are any.
+    pub(crate) fn features(&self) -> Option<&Features> {
+        self.level.curves.as_ref().map(|curves| &curves.features)
+    }
+
+    /// The table of creases and boundaries.
+    pub(crate) fn curves(&self) -> Vec<u32> {
+        table(self.features().unwrap_or(&Features::default()), &self.level.curve_points)
+    }
+
+    /// The states of the slots before the first class.
+    pub(crate) fn initial_states(&self) -> Vec<u32> {
+        let c = &self.state.candidates;
+        let state = |slot: usize| match (slot >= c.first_on_curve, c.exists(slot)) {
+            (true, _) => ON_CURVE,
+            (false, true) => FREE,
+            (false, false) => u32::MAX,
+        };
+        (0..c.len()).map(state).collect()
+    }
+
     /// The uniform of this step, with capacities that suffice.
     pub(crate) fn params(&self) -> Params {
         Params {
             points: self.level.len() as u32,
-            slots: self.state.rings.len() as u32,
+            slots: self.state.candidates.len() as u32,
+            fan_slots: self.state.rings.len() as u32,
+            records: self.features().map_or(0, |features| features.old as u32),
             level: self.level.step + 1,
             arena_words: ARENA_WORDS as u32,
             ring_entries: self.state.rings.len() as u32,
@@ -155,7 +203,8 @@ impl Step {
             position: l.positions[i].to_array(),
             radius: l.radii[i],
             normal: l.normals[i].to_array(),
-            level: 0,
+            // No record is the largest index.
+            level: l.seen(i).record.wrapping_add(1) << LEVEL_BITS,
         };
         (0..l.len()).map(point).collect()
     }
@@ -171,7 +220,8 @@ impl Step {
 
     pub(crate) fn candidate_normals(&self) -> Vec<[f32; 4]> {
         let c = &self.state.candidates;
-        let near = |i: usize| c.near[c.owners[i] as usize];
+        // New points on curves have no owner.
+        let near = |i: usize| c.near.get(c.owners[i] as usize).copied().unwrap_or(0.0);
         (0..c.rho.len()).map(|i| c.normals[i].extend(near(i)).to_array()).collect()
     }
 }
@@ -180,6 +230,12 @@ impl Step {
 pub(crate) fn grid_words(grid: &Grid) -> Vec<u32> {
     [grid.starts.as_slice(), &grid.items].concat()
 }
+
+/// States of a slot, as `shaders/shared/records.wgsl` has them: a candidate that no class has tried, a new point on a curve,
+/// and a candidate that was tried in vain. What a class inserts has a state of 2 on.
+pub(crate) const FREE: u32 = 0;
+pub(crate) const ON_CURVE: u32 = 1;
+pub(crate) const USED: u32 = u32::MAX - 1;
 
 /// Capacities that every small cloud keeps.
 pub(crate) const ARENA_WORDS: usize = 1 << 20;

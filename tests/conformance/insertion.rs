@@ -1,14 +1,15 @@
 //! The insertion kernel, class by class, on the reference's candidates and classes.
 
 use crate::harness::{
-    ARENA_WORDS, Device, Step, compare, compare_equal, device, grid_words, must, steps,
+    ARENA_WORDS, Device, ON_CURVE, Step, USED, compare, compare_equal, device, grid_words, must,
+    steps,
 };
 use crate::tolerance::RADIUS;
 use surfine::records::Counters;
 
 /// States of the slots and bits of the radii after all classes, each in the order that `arrange` makes of it.
 fn insert(device: &mut Device, step: &Step, arrange: fn(&mut Vec<u32>)) -> (Vec<u32>, Vec<u32>) {
-    let (n, slots) = (step.level.len(), step.state.rings.len());
+    let (n, slots) = (step.level.len(), step.state.candidates.len());
     let mut lists = step.state.classes.members.clone();
     lists.iter_mut().for_each(arrange);
     let mut starts = vec![0];
@@ -22,18 +23,17 @@ fn insert(device: &mut Device, step: &Step, arrange: fn(&mut Vec<u32>)) -> (Vec<
     let normals = device.buffer("normals", &step.candidate_normals());
     let grid = device.buffer("grid", &grid_words(&step.state.candidate_grid));
     let members = device.buffer("members", &[starts.as_slice(), &lists.concat()].concat());
-    let exists = |s| if step.state.candidates.exists(s) { 0 } else { u32::MAX };
-    let initial: Vec<u32> = (0..slots).map(exists).collect();
-    let guarded = [bytemuck::cast_slice(&initial), &[0xa5u8; 64][..]].concat();
+    let guarded = [bytemuck::cast_slice(&step.initial_states()), &[0xa5u8; 64][..]].concat();
     let states = device.buffer("states", &guarded);
     let radii = device.output::<u32>("radii", n + slots);
     let arena = device.output::<u32>("arena", ARENA_WORDS);
+    let curves = device.buffer("curves", &step.curves());
     for class in 0..lists.len() {
         let counters = device.output::<u32>("counters", size_of::<Counters>() / 4);
         let count = lists[class].len();
-        let words = [class as u32, starts[class], count as u32, lists.len() as u32];
+        let words = [class as u32 + 1, starts[class], count as u32, lists.len() as u32];
         let inputs = [&points, &ring_starts, &positions, &normals, &grid, &members];
-        let outputs = [&states, &radii, &arena, &counters];
+        let outputs = [&states, &radii, &arena, &counters, &curves];
         device.run(step.run("insertion", words, count), &[&inputs[..], &outputs].concat());
         let counters = device.read::<Counters>(&counters, 1)[0];
         assert_eq!(counters.cut_loops, 0, "{}", step.name);
@@ -47,21 +47,26 @@ fn insert(device: &mut Device, step: &Step, arrange: fn(&mut Vec<u32>)) -> (Vec<
 }
 
 fn inserted(states: &[u32]) -> Vec<bool> {
-    states.iter().map(|&s| (1..u32::MAX - 1).contains(&s)).collect()
+    states.iter().map(|&s| (ON_CURVE..USED).contains(&s)).collect()
 }
 
 #[test]
 fn decisions_and_radii_are_those_of_the_reference() {
     let mut device = device();
     for step in steps() {
-        let (states, radii) = insert(&mut device, &step, |_| ());
+        let (states, radii) = insert(&mut device, step, |_| ());
         let expected = &step.state.insertion;
         must(compare_equal(
             &format!("{}: inserted", step.name),
             &expected.inserted,
             &inserted(&states),
         ));
-        let radii: Vec<f32> = radii.into_iter().map(f32::from_bits).collect();
+        let mut radii: Vec<f32> = radii.into_iter().map(f32::from_bits).collect();
+        // What new points on curves have at least is left to the commit.
+        let on_curve = step.level.len() + step.state.candidates.first_on_curve;
+        for (radius, point) in radii[on_curve..].iter_mut().zip(&step.level.curve_points) {
+            *radius = radius.max(point.radius);
+        }
         let all = [expected.radii.as_slice(), &expected.slot_radii].concat();
         let scale = all.iter().copied().fold(0.0, f32::max);
         must(compare(&format!("{}: radii", step.name), &all, &radii, device.allows(RADIUS), scale));
@@ -72,8 +77,8 @@ fn decisions_and_radii_are_those_of_the_reference() {
 fn the_order_inside_a_class_does_not_matter() {
     let mut device = device();
     for step in steps() {
-        let ascending = insert(&mut device, &step, |_| ());
-        let descending = insert(&mut device, &step, |list| list.reverse());
+        let ascending = insert(&mut device, step, |_| ());
+        let descending = insert(&mut device, step, |list| list.reverse());
         must(compare_equal(&format!("{}: states", step.name), &ascending.0, &descending.0));
         must(compare_equal(&format!("{}: radii", step.name), &ascending.1, &descending.1));
     }

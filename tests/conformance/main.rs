@@ -4,6 +4,7 @@
 //! equal bit for bit. On other adapters the table in `tolerance.rs` holds. Without an adapter the suite fails: install
 //! one (on Debian `mesa-vulkan-drivers`); `tests/run.sh` does.
 
+mod boundary;
 mod candidates;
 mod clouds;
 mod coloring;

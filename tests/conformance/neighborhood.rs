@@ -17,8 +17,9 @@ fn rings(device: &mut Device, step: &Step) -> (Vec<u32>, Vec<[u32; 2]>, u64) {
     let counters = device.output::<u32>("counters", size_of::<Counters>() / 4);
     let starts = device.output::<u32>("starts", n + 1);
     let all = [0, n as u32, 0, 0];
-    device
-        .run(step.run("neighborhood_ball", all, n), &[&points, &grid, &arena, &blocks, &counters]);
+    let curves = device.buffer("curves", &step.curves());
+    let ball = [&points, &grid, &arena, &blocks, &counters, &curves];
+    device.run(step.run("neighborhood_ball", all, n), &ball);
     let badness = [&points, &blocks, &arena, &counters];
     device.run(step.run("neighborhood_badness", all, ARENA_WORDS / 4), &badness);
     if step.refine.rules.natural_neighbors {
@@ -47,7 +48,7 @@ fn rings(device: &mut Device, step: &Step) -> (Vec<u32>, Vec<[u32; 2]>, u64) {
 fn rings_are_those_of_the_reference() {
     let mut device = device();
     for step in steps() {
-        let (starts, entries, ball) = rings(&mut device, &step);
+        let (starts, entries, ball) = rings(&mut device, step);
         let expected = &step.state.rings;
         let ids = |e: &[RingEntry]| e.iter().map(|e| e.id).collect::<Vec<_>>();
         let angles: Vec<f32> = expected.entries.iter().map(|e| e.angle).collect();
@@ -65,16 +66,17 @@ fn rings_are_those_of_the_reference() {
 #[test]
 fn an_arena_that_is_too_small_is_told_and_not_overrun() {
     let mut device = device();
-    let step = steps().remove(0);
+    let step = &steps()[0];
     let n = step.level.len();
     let points = device.buffer("points", &step.points());
     let grid = device.buffer("grid", &grid_words(&step.state.grid));
     let (arena, blocks) =
         (device.output::<u32>("arena", 100), device.output::<[u32; 2]>("blocks", n));
     let counters = device.output::<u32>("counters", size_of::<Counters>() / 4);
+    let curves = device.buffer("curves", &step.curves());
     let mut run = step.run("neighborhood_ball", [0, n as u32, 0, 0], n);
     run.params.arena_words = 100;
-    device.run(run, &[&points, &grid, &arena, &blocks, &counters]);
+    device.run(run, &[&points, &grid, &arena, &blocks, &counters, &curves]);
     let counters: Vec<Counters> = device.read(&counters, 1);
     assert_eq!(u64::from(counters[0].arena_peak), 4 * step.state.rings.ball_neighbors);
     // Reading checks the guard words.

@@ -1,14 +1,14 @@
 //! The `next_ring` kernel on the reference's decisions.
 
-use crate::harness::{ARENA_WORDS, compare, device, grid_words, must, steps};
+use crate::harness::{ARENA_WORDS, FREE, USED, compare, device, grid_words, must, steps};
 use crate::tolerance::RADIUS;
 use surfine::records::Counters;
 
 #[test]
 fn covers_are_those_of_the_reference() {
     let mut device = device();
-    for step in steps().into_iter().filter(|step| step.refine.rules.next_ring) {
-        let (n, slots) = (step.level.len(), step.state.rings.len());
+    for step in steps().iter().filter(|step| step.refine.rules.next_ring) {
+        let (n, slots) = (step.level.len(), step.state.candidates.len());
         let state = &step.state;
         let points = device.buffer("points", &step.points());
         let starts = device.buffer("starts", &state.rings.starts);
@@ -16,19 +16,17 @@ fn covers_are_those_of_the_reference() {
         let positions = device.buffer("positions", &step.candidate_positions());
         let normals = device.buffer("normals", &step.candidate_normals());
         let grid = device.buffer("grid", &grid_words(&state.candidate_grid));
-        // A state from 1 on is one more than the class that inserted the slot.
-        let of_slot = |s: usize| match (state.insertion.inserted[s], state.candidates.exists(s)) {
-            (true, _) => 1 + s as u32 % 7,
-            (false, true) => {
-                if s.is_multiple_of(2) {
-                    0
-                } else {
-                    u32::MAX - 1
-                }
+        // Slots that nobody inserted are free or were tried: both must be seen as not there.
+        let mut states = step.initial_states();
+        for (slot, own) in states.iter_mut().enumerate() {
+            match (*own, state.insertion.inserted[slot]) {
+                (FREE, true) => *own = 2 + slot as u32 % 7,
+                (FREE, false) if !slot.is_multiple_of(2) => *own = USED,
+                _ => {}
             }
-            (false, false) => u32::MAX,
-        };
-        let states = device.buffer("states", &(0..slots).map(of_slot).collect::<Vec<u32>>());
+        }
+        let states = device.buffer("states", &states);
+        let curves = device.buffer("curves", &step.curves());
         let mut radii = [state.insertion.radii.as_slice(), &state.insertion.slot_radii].concat();
         radii.resize(2 * (n + slots), 0.0);
         let guarded = [bytemuck::cast_slice(&radii), &[0xa5u8; 64][..]].concat();
@@ -37,7 +35,7 @@ fn covers_are_those_of_the_reference() {
         let counters = device.output::<u32>("counters", size_of::<Counters>() / 4);
         let rings = [&points, &starts, &entries];
         let candidates = [&positions, &normals, &grid, &states];
-        let outputs = [&radii, &arena, &counters];
+        let outputs = [&radii, &arena, &counters, &curves];
         let buffers = [&rings[..], &candidates, &outputs].concat();
         device.run(step.run("next_ring", [0, n as u32, 0, 0], n), &buffers);
 

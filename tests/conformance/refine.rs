@@ -1,12 +1,12 @@
 //! Whole runs of several levels: the engine's cloud against the reference's.
 
-use crate::clouds::{Cloud, describe, variants, whole};
-use crate::harness::{Device, compare, compare_equal, device, must};
+use crate::clouds::{Cloud, describe, shared_outlined, variants, whole, whole_outlined};
+use crate::harness::{Device, compare, compare_equal, device, first_level, must};
 use crate::tolerance::{EXACT, FLIPPED_DECISIONS, POSITION};
 use std::collections::HashMap;
 use surfine::records::Point;
 use surfine::testing::{Sizing, read};
-use surfine::{Mode, PointSet, RefineParams, Refined, Refiner, Rules, Vec3};
+use surfine::{Boundary, LevelReport, Mode, PointSet, RefineParams, Refined, Refiner, Rules, Vec3};
 use surfine_points::shapes::{Sampling, Shape, sample};
 
 fn flat(vectors: &[Vec3]) -> Vec<f32> {
@@ -24,6 +24,8 @@ fn must_be_identical(name: &str, expected: &Refined, found: &Refined) {
     must(compare(&what("radii"), &e.radii, &f.radii, EXACT, 1.0));
     must(compare_equal(&what("levels"), &expected.levels(), &found.levels()));
     must(compare_equal(&what("radii by level"), &expected.level_radii, &found.level_radii));
+    must(compare_equal(&what("attributes"), &e.attributes, &f.attributes));
+    assert_eq!(expected.curves, found.curves, "{name}: curves");
     assert_eq!(expected.reports.len(), found.reports.len(), "{name}: reports");
     for (e, f) in expected.reports.iter().zip(&found.reports) {
         assert_eq!(
@@ -31,6 +33,8 @@ fn must_be_identical(name: &str, expected: &Refined, found: &Refined) {
             (f.points_in, f.points_out, f.ball_neighbors, f.ring_neighbors, f.classes, f.isolated),
             "{name}: report"
         );
+        let words = |report: &LevelReport| report.stages.iter().map(|s| s.0).collect::<Vec<_>>();
+        must(compare_equal(&what("stages"), &words(e), &words(f)));
     }
 }
 
@@ -73,6 +77,40 @@ fn whole_runs_give_the_bytes_of_the_reference() {
     for (cloud, levels) in whole() {
         for params in variants() {
             check(&mut device, &cloud, &RefineParams { levels, ..params });
+        }
+    }
+}
+
+#[test]
+fn whole_runs_with_curves_give_the_bytes_of_the_reference() {
+    let mut device = device();
+    let mut check = |cloud: &Cloud, params: RefineParams| {
+        let level = first_level(&cloud.points, &params);
+        assert!(level.curves.is_some(), "{} {}", cloud.name, describe(&params));
+        check(&mut device, cloud, &params);
+    };
+    for (cloud, most) in whole_outlined() {
+        for (variant, params) in variants().into_iter().enumerate() {
+            // The second level splits the curves, whatever the variant.
+            let levels = if variant == 0 { most } else { 2 };
+            check(&cloud, RefineParams { levels, ..params });
+        }
+    }
+    for cloud in shared_outlined() {
+        check(&cloud, RefineParams { levels: 2, ..RefineParams::default() });
+    }
+}
+
+#[test]
+fn boundaries_reach_the_device_as_asked() {
+    let mut device = device();
+    let cloud = |(cloud, _): (Cloud, u32)| cloud;
+    let (cube, saddle) = (cloud(whole_outlined().remove(0)), cloud(whole_outlined().remove(4)));
+    for boundary in [Boundary::None, Boundary::Marked("rim".into()), Boundary::Angle(2.4)] {
+        for cloud in [&cube, &saddle] {
+            let boundary = boundary.clone();
+            let params = RefineParams { levels: 2, boundary, ..RefineParams::default() };
+            check(&mut device, cloud, &params);
         }
     }
 }
@@ -206,7 +244,7 @@ fn a_device_of_too_small_limits_is_an_error() {
     let adapter = surfine::choose_adapter(None).expect("the suite has an adapter");
     let opened = pollster::block_on(adapter.request_device(&Default::default()));
     let (own_device, queue) = opened.expect("the adapter opens");
-    // The default limits allow eight storage buffers a stage; the insertion has ten.
+    // The default limits allow eight storage buffers a stage; the insertion has eleven.
     let error = Refiner::with_device(own_device, queue).expect_err("the limits are too small");
     assert!(error.to_string().contains("storage"), "{error}");
 }

@@ -75,7 +75,7 @@ struct Params {
     theta_c_degrees: f64,
     lambda1: f32,
     lambda2: f32,
-    /// θ_b, where boundaries are found by it.
+    /// `θ_b`, where boundaries are found by it.
     boundary_angle_degrees: Option<f64>,
     /// The property that marks the boundary.
     boundary_property: Option<String>,

@@ -12,8 +12,12 @@ pub const RECORD_WORDS: usize = 24;
 /// Words of a segment.
 pub const SEGMENT_WORDS: usize = 4;
 
-/// The table: a header, the records (those of new points last), the segments, and these by cell.
-pub(crate) fn table(features: &Features, new: &[CurvePoint]) -> Vec<u32> {
+/// The table: a header, the records (those of new points last), the segments, and these by cell. A header of zeros where
+/// there are no curves.
+pub fn table(features: &Features, new: &[CurvePoint]) -> Vec<u32> {
+    if features.is_empty() {
+        return vec![0; HEADER_WORDS];
+    }
     let (grid, reach) = features.segment_grid();
     let segments = HEADER_WORDS + RECORD_WORDS * features.records.len();
     let starts = segments + SEGMENT_WORDS * features.segments.len();
@@ -56,14 +60,14 @@ fn bits(v: Vec3) -> [u32; 3] {
     v.to_array().map(f32::to_bits)
 }
 
-/// Writes the table of a step into its buffer; a few words where there are no curves.
+/// Writes the table of a step into its buffer.
 pub(crate) fn upload(
     gpu: &Gpu,
     buffer: &mut Buffer,
     features: &Features,
     new: &[CurvePoint],
 ) -> Result<(), Error> {
-    let words = if features.is_empty() { vec![0; HEADER_WORDS] } else { table(features, new) };
+    let words = table(features, new);
     buffer.reserve(gpu, 4 * words.len() as u64)?;
     gpu.queue.write_buffer(buffer.raw(), 0, bytemuck::cast_slice(&words));
     Ok(())

@@ -77,7 +77,7 @@ impl Refiner {
     /// `wgpu::Features::PASSTHROUGH_SHADERS`; see [`Mode`](crate::Mode).
     ///
     /// # Errors
-    /// A kernel is refused, for instance because the device's limits are below ten storage buffers a stage.
+    /// A kernel is refused, for instance because the device's limits are below eleven storage buffers a stage.
     pub fn with_device(device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, Error> {
         Self::with_gpu(Gpu::from_device(device, queue))
     }
@@ -305,7 +305,8 @@ impl Refiner {
     ) -> Result<LevelReport, Error> {
         let mut step = self.step(refine, params, on_curves)?;
         let counters = if let Some(Rings { counters, slots }) = rings {
-            (step.params.slots, step.params.fan_slots) = (slots, slots);
+            step.params.fan_slots = slots;
+            step.params.slots = slots + on_curves.new;
             counters
         } else {
             clock.start("grid");

@@ -45,7 +45,7 @@ impl Gap {
     }
 }
 
-/// Whether a point with this gap may lie on a boundary: if it is wider than θ_b, or if the input marks the point.
+/// Whether a point with this gap may lie on a boundary: if it is wider than `θ_b`, or if the input marks the point.
 pub fn may_be_boundary(points: &PointSet, params: &RefineParams, gap: &Gap) -> bool {
     let point = gap.point as usize;
     match &params.boundary {
@@ -135,7 +135,15 @@ fn long_chains(pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
             .take_while(|_| along.get(&at).inspect(|&&next| at = next).is_some())
             .count()
     };
-    let is_long = |&&[a, _]: &&[u32; 2]| steps(a, &nexts) + steps(a, &previous) >= SHORTEST_CHAIN;
+    // A short loop goes round and round.
+    let comes_back = |from: u32| {
+        let mut at = from;
+        (1..SHORTEST_CHAIN)
+            .any(|_| nexts.get(&at).inspect(|&&next| at = next).is_some() && at == from)
+    };
+    let is_long = |&&[a, _]: &&[u32; 2]| {
+        steps(a, &nexts) + steps(a, &previous) >= SHORTEST_CHAIN && !comes_back(a)
+    };
     pairs.iter().filter(is_long).copied().collect()
 }
 

@@ -156,16 +156,20 @@ impl Features {
         self.by_point_of(0..self.old, points)
     }
 
-    /// The segments of the level by the cell of their middle; and half the length of the longest.
+    /// The crease segments of the level by the cell of their middle; and half the length of the longest. Nothing lies
+    /// beyond a boundary that its segments could hide.
     pub fn segment_grid(&self) -> (Grid, f32) {
+        let creases = (0u32..).zip(&self.segments).filter(|(_, s)| !s.is_boundary());
         let ends = |s: &Segment| s.sides[0].map(|r| self.records[r as usize].position);
-        let middles: Vec<Vec3> =
-            self.segments.iter().map(ends).map(|[a, b]| (a + b) * 0.5).collect();
-        let lengths: Vec<f32> =
-            self.segments.iter().map(ends).map(|[a, b]| (b - a).length().max(1e-30)).collect();
+        let (mut ids, mut middles, mut lengths) = (Vec::new(), Vec::new(), Vec::new());
+        for (id, [a, b]) in creases.map(|(id, s)| (id, ends(s))) {
+            ids.push(id);
+            middles.push((a + b) * 0.5);
+            lengths.push((b - a).length().max(1e-30));
+        }
         let longest = lengths.iter().copied().fold(0.0, f32::max);
         let shape = GridShape::fit(&middles, &lengths);
-        (Grid::build(shape, (0u32..).zip(middles)), 0.5 * longest)
+        (Grid::build(shape, ids.into_iter().zip(middles)), 0.5 * longest)
     }
 }
 

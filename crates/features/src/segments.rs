@@ -144,7 +144,7 @@ impl<'a> Creases<'a> {
         }
         let here = self.direction(from)?.dot(chord);
         let there = -self.direction(to)?.dot(chord);
-        (here >= ALONG && there >= ALONG).then(|| Link {
+        (here >= ALONG && there >= ALONG).then_some(Link {
             to,
             swapped,
             score: length * (3.0 - here - there),

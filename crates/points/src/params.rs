@@ -17,7 +17,7 @@ pub enum Neighborhood {
 pub enum Boundary {
     /// None: the surface is closed.
     None,
-    /// Those whose ring leaves a gap wider than θ_b, radians in (π/2, 2π). Chains of them become boundaries.
+    /// Those whose ring leaves a gap wider than `θ_b`, radians in (π/2, 2π). Chains of them become boundaries.
     Angle(f32),
     /// Those with a value other than zero in the property of that name.
     Marked(String),
@@ -59,7 +59,7 @@ pub struct RefineParams {
     pub lambda1: f32,
     /// Share of a new point's radius that is its discard sphere (eq. 11), in [0, 1]. Default 1/2.
     pub lambda2: f32,
-    /// Which points may lie on a boundary (section 6). Default: θ_b of 160°.
+    /// Which points may lie on a boundary (section 6). Default: `θ_b` of 160°.
     pub boundary: Boundary,
     /// Rules beyond the paper. Default all; [`Rules::LITERAL`] is the paper's text.
     pub rules: Rules,

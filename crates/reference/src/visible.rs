@@ -11,16 +11,16 @@ use surfine_features::{Features, NONE, Record};
 use surfine_points::{Grid, Rules};
 
 /// A point belongs to a side only if their normals differ by less than this cosine says,
-const LIKE: f32 = 0.3;
+pub const LIKE: f32 = 0.3;
 /// the sine of its elevation over the side's tangent plane is below this,
-const STEEP: f32 = 0.75;
+pub const STEEP: f32 = 0.75;
 /// and it does not lie behind the side by more than this cosine.
-const BEHIND: f32 = -0.35;
+pub const BEHIND: f32 = -0.35;
 /// Crease points see each other if neither lies behind the other by more than this cosine.
-const CREASE_BEHIND: f32 = -0.3;
+pub const CREASE_BEHIND: f32 = -0.3;
 /// Segments can separate two points if their middle is within this share of the points' distance, and half of the longest
 /// segment, from the middle of the points.
-const AROUND: f32 = 0.75;
+pub const AROUND: f32 = 0.75;
 
 /// The curves of a level, ready for queries.
 #[derive(Clone, Debug, PartialEq)]
@@ -170,7 +170,7 @@ impl<'a> View<'a> {
         let mut fences = Vec::new();
         if let (Some(curves), true) = (&level.curves, rules.separating_segments) {
             curves.grid.visit_ball(center.position, (AROUND + 0.5) * radius + curves.reach, |s| {
-                fences.push(s)
+                fences.push(s);
             });
         }
         Self { curves: level.curves.as_ref(), center, fences, radius, rules }

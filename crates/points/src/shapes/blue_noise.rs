@@ -24,12 +24,17 @@ struct Samples<'a> {
 
 /// Indices, ascending, of the `n` positions that are left of a random sample of a surface of this area.
 pub(super) fn thin(positions: &[Vec3], n: usize, area: f64) -> Vec<usize> {
+    thin_around(positions, 0, n, area)
+}
+
+/// The same with the first `fixed` positions among those that are left, whatever they weigh.
+pub(super) fn thin_around(positions: &[Vec3], fixed: usize, n: usize, area: f64) -> Vec<usize> {
     let mut samples = Samples::new(positions, n, area);
     // Weights only fall. So the heaviest sample is the top of the heap as soon as its entry holds its present weight;
     // an older entry is put back with the present one. Bits of numbers that aren't negative sort as the numbers do.
     let entry = |i: u32, weight: f64| (weight.to_bits(), Reverse(i));
     let mut heap: BinaryHeap<_> =
-        (0u32..).zip(&samples.weights).map(|(i, &weight)| entry(i, weight)).collect();
+        (0u32..).zip(&samples.weights).skip(fixed).map(|(i, &weight)| entry(i, weight)).collect();
     let mut excess = positions.len().saturating_sub(n);
     while excess > 0 {
         let Some((bits, Reverse(i))) = heap.pop() else { break };

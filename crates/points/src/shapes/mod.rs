@@ -4,9 +4,11 @@
 //! and square roots alone, which IEEE 754 rounds in one way, never from a system library's sine or power.
 
 mod blue_noise;
+mod outlined;
 mod radii;
 mod surface;
 
+pub use outlined::{Outlined, one_record_a_normal, sample_outlined};
 pub use radii::{natural_radii, natural_radii_of};
 pub use surface::Shape;
 

@@ -101,13 +101,13 @@ impl Shape {
 }
 
 /// Uniform in the square `|x|, |y| <= 1`.
-fn in_square(random: &mut Rng) -> DVec2 {
+pub(super) fn in_square(random: &mut Rng) -> DVec2 {
     let mut coordinate = || 2.0 * random.f64() - 1.0;
     DVec2::new(coordinate(), coordinate())
 }
 
 /// Uniform in the unit disc less a speck at its centre, where the direction would be coarse.
-fn in_disc(random: &mut Rng) -> DVec2 {
+pub(super) fn in_disc(random: &mut Rng) -> DVec2 {
     loop {
         let point = in_square(random);
         if (1e-6..=1.0).contains(&point.length_squared()) {
@@ -205,7 +205,7 @@ fn ellipsoid_foot(x: DVec3) -> DVec3 {
 }
 
 /// The point of the saddle over or under a point of the square.
-fn on_saddle(foot: DVec2) -> DVec3 {
+pub(super) fn on_saddle(foot: DVec2) -> DVec3 {
     foot.extend(STEEP * (foot.x * foot.x - foot.y * foot.y))
 }
 
