@@ -20,7 +20,8 @@ INTRO = """# Gallery
 Figures of *Interpolatory Refinement for Real-Time Processing of Point-Based Geometry* (Guennebaud, Barthe and Paulin 2005) on models
 that can be had, with the commands that draw them and what `surfine evaluate` says. Where a result is not good yet, it is shown as it is.
 [evaluation.md](evaluation.md) defines the measures. `python3 docs/gallery/make.py DATA` made this page; `data` stands for the folder of
-test models. Models: Igea (Cyberware), Nefertiti (Egyptian Museum Berlin), fandisk (Pratt & Whitney, Hugues Hoppe), Spot (Keenan Crane).
+test models. Models: Igea (Cyberware), Nefertiti (Egyptian Museum Berlin), fandisk (Pratt & Whitney, Hugues Hoppe),
+armadillo (Stanford Computer Graphics Laboratory), the face of the libigl tutorial, Spot (Keenan Crane).
 """
 
 # Each figure: title, text, commands. The last picture that a command writes is shown.
@@ -57,32 +58,60 @@ surface. Both interpolate the 600 points.""",
     ),
     (
         "Figure 9: a large hole",
-        """The paper fills a hole by raising the radii of the points around it and refining eight times. Here a ball was cut out of Igea
-and the radii of the 66 points around it reach across. Two steps, drawn as raw points: the hole begins to close from many sides, but
-its points stay coarser than the rest. A step of its own for holes is to come.""",
+        """The paper fills a hole by raising the radii of the points around it and refining eight times. Here a ball was cut out of Igea and
+the radii of the 66 points around it reach across: Surfine takes that as the wish to fill the hole, does so at the density of the input, and
+then refines. From the left: the hole, the fill, three steps, and the true surface, whose braid no rim can know.""",
         [
-            "surfine refine data/points/igea-5000-hole.ply -o hole.ply --levels 2 -q",
-            "surfine render data/points/igea-5000-hole-open.ply data/mesh/igea.ply -o figure-9-hole.png --size 480x560"
-            " --eye=-1.3,0.4,1.2 --target=-0.05,0,0 --caption 'the hole' --caption 'true surface'",
-            "surfine render hole.ply -o figure-9.png --size 960x800 --points --point-size 1"
-            " --eye=-1.3,0.4,1.2 --target=-0.05,0,0 --caption 'after 2 steps'",
+            "surfine fill data/points/igea-5000-hole.ply -o fill.ply",
+            "surfine refine data/points/igea-5000-hole.ply -o hole.ply --levels 3 -q",
+            "surfine render data/points/igea-5000-hole-open.ply fill.ply hole.ply data/mesh/igea.ply -o figure-9.png --size 400x480"
+            " --eye=-1.3,0.4,1.2 --target=-0.05,0,0 --caption 'the hole' --caption 'filled' --caption 'and refined'"
+            " --caption 'true surface'",
             "surfine evaluate hole.ply --truth data/mesh/igea.ply --input data/points/igea-5000-hole.ply",
         ],
     ),
     (
         "Figure 10: creases",
-        """The paper keeps creases whose points have two normals. The input shows them: discs end at the crease. The refinement does not
-know the second normals yet and takes the first, so that edges get round and ragged.""",
+        """The paper keeps creases whose points have two normals. So do we: edges and corners stay sharp, each side is refined by itself,
+and new points on the edges come with both normals.""",
         [
             "surfine refine data/points/fandisk-3000-crease.ply -o fandisk.ply --levels 4 -q",
-            "surfine render data/points/fandisk-3000-crease.ply fandisk.ply -o figure-10.png --size 600x600 --view iso"
-            " --caption '3 000 points, 497 on creases' --caption 'after 4 steps'",
+            "surfine render data/points/fandisk-3000-crease.ply fandisk.ply data/mesh/fandisk.ply -o figure-10.png --size 480x480"
+            " --view iso --caption '3 000 points, 497 on creases' --caption 'after 4 steps' --caption 'true surface'",
             "surfine evaluate fandisk.ply --truth data/mesh/fandisk.ply --input data/points/fandisk-3000-crease.ply",
         ],
     ),
     (
+        "Section 6: boundaries",
+        """The paper treats the ends of an open surface as curves of their own. On the left three steps that take the surface for closed: the
+rim of the neck is eaten away; in the middle with the boundary; on the right the true surface.""",
+        [
+            "surfine refine data/points/face-4000-boundary.ply -o closed.ply --levels 3 -q --closed",
+            "surfine refine data/points/face-4000-boundary.ply -o open.ply --levels 3 -q",
+            "surfine render closed.ply open.ply data/mesh/face.ply -o section-6.png --size 480x300 --eye 0,-0.62,0.75"
+            " --target 0,-0.36,0.1 --caption 'taken for closed' --caption 'with its boundary' --caption 'true surface'",
+            "surfine evaluate closed.ply --truth data/mesh/face.ply",
+            "surfine evaluate open.ply --truth data/mesh/face.ply",
+        ],
+    ),
+    (
+        "Figure 11: sharp bends",
+        """The paper shows holes at a sharp bend without the geodesic projection and without the curved angle. Here an ear of the armadillo, two
+sheets less than an input spacing apart, after two steps: with both, without the projection, without both, and the true surface. We see no
+holes, but more wrong normals without the projection (orange: backs). [algorithm.md](algorithm.md#geodesic-projection-and-curved-angle) has figures.""",
+        [
+            "surfine refine data/points/armadillo-10000-uniform.ply -o both.ply --levels 2 -q",
+            "surfine refine data/points/armadillo-10000-uniform.ply -o fuzzy.ply --levels 2 -q --neighborhood fuzzy",
+            "surfine refine data/points/armadillo-10000-uniform.ply -o neither.ply --levels 2 -q --neighborhood fuzzy --plain-angle",
+            "surfine render both.ply fuzzy.ply neither.ply data/mesh/armadillo.ply -o figure-11.png --size 380x340"
+            " --eye=-0.25,0.42,0.45 --target=-0.075,0.312,0.122 --caption 'both' --caption 'no projection'"
+            " --caption 'neither' --caption 'true surface'",
+        ],
+    ),
+    (
         "Figure 12: colours",
-        """The paper interpolates colours linearly from the three corners of each triangle.""",
+        """The paper interpolates colours linearly from the three corners of each triangle. The last line compares with the colour of the
+nearest input point.""",
         [
             "surfine refine data/points/spot-2500-colour.ply -o spot.ply --levels 4 -q",
             "surfine render data/points/spot-2500-colour.ply spot.ply -o figure-12.png --size 560x560 --view iso --color rgb"

@@ -33,6 +33,7 @@ Examples:
   surfine refine scan.ply -o fine.ply --ascii --provenance --quiet
   surfine refine scan.ply -o fine.ply --fill-holes all
   surfine refine scan.ply -o fine.ply --attribute intensity=nearest --attribute tx,ty,tz=unit
+  surfine refine part.ply -o fine.ply --boundary-property rim
   surfine refine scan.ply -o fine.ply --json | jq .points_per_second
 
 The points of IN come first in FILE, in their order and unchanged but for their radii; the new points

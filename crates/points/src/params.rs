@@ -35,7 +35,7 @@ impl Boundary {
 
 impl Default for Boundary {
     fn default() -> Self {
-        Self::Angle(160.0 * PI / 180.0)
+        Self::Angle(160f32.to_radians())
     }
 }
 

@@ -25,7 +25,7 @@ pub const OPEN_GAP: f32 = 1.745_329_3;
 pub struct RingEntry {
     /// Index of the neighbour.
     pub id: u32,
-    /// Its angle on the tangent plane of the centre, in the frame of [`tangent_frame`], radians in [0, 2π].
+    /// Its angle on the tangent plane of the centre, in the frame of [`Level::frame`], radians in [0, 2π].
     pub angle: f32,
 }
 

@@ -217,7 +217,7 @@ fn cube_edges(spacing: f64) -> Vec<Oriented> {
     points
 }
 
-/// `n` points: those on the curves come first and have [`ALONG`] of the mean spacing, the others are even or random.
+/// `n` points: those on the curves come first and have 0.9 of the mean spacing, the others are even or random.
 /// There are more than `n` if the curves have as many.
 ///
 /// Points on creases have their further normals in `nx2 ny2 nz2` and, at corners, `nx3 ny3 nz3`, and say in `kind` what
