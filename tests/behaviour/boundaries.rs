@@ -106,7 +106,8 @@ fn the_refined_surface_reaches_the_rim_and_ends_there() {
             assert!(on_rim.len() > 6 * 30, "{name}: {} new points on the rim", on_rim.len());
             for x in on_rim {
                 let off = true_rim.distance(x, |_| true) / input;
-                assert!(off < 0.05, "{name}: a new rim point is {off} spacings off at {x}");
+                // Measured up to .013.
+                assert!(off < 0.016, "{name}: a new rim point is {off} spacings off at {x}");
             }
             for i in new_points(&refined) {
                 let beyond = beyond(shape, refined.points.positions[i]) / input;

@@ -5,7 +5,7 @@ use surfine_points::{Attribute, CurveCounts, Invalid, PointSet, Refined, Values,
 use surfine_reference::Error;
 
 use crate::clouds::{closed, levels, refine};
-use crate::curves::{even, further_normals, new_points, set_float};
+use crate::curves::{even, floats, further_normals, new_points, set_float};
 use crate::degenerate::assert_sound;
 use crate::measure::{assert_same_bytes, vector_bits};
 
@@ -72,6 +72,26 @@ fn a_roof_stays_a_roof() {
 }
 
 #[test]
+fn a_groove_stays_a_groove() {
+    // The roof upside down: the normals of its sides lean towards each other.
+    let mut cloud = roof(6, |_| true);
+    cloud.positions.iter_mut().for_each(|x| x.z = -x.z);
+    cloud.normals.iter_mut().for_each(|n| n.x = -n.x);
+    for i in 0..cloud.len() {
+        let x = floats(&cloud, "nx2")[i];
+        set_float(&mut cloud, "nx2", i, -x);
+    }
+    let refined = refine_closed(&cloud, 4);
+    assert_eq!((refined.curves.crease_points, refined.curves.crease_segments), (13, 12));
+    assert!(refined.points.len() > 40 * cloud.len(), "{:?}", refined.level_sizes);
+    for i in new_points(&refined) {
+        let x = refined.points.positions[i];
+        let off = (x.z - x.x.abs()).abs();
+        assert!(off < 1e-6, "{x} is {off:e} off the groove");
+    }
+}
+
+#[test]
 fn a_crease_may_end_inside_a_face() {
     // A dart: sharp for y <= 0 only. Beyond, the middle row is round.
     let cloud = roof(6, |y| y <= 0);
@@ -102,11 +122,8 @@ fn crease_points_without_partners_are_smooth_points() {
 
 /// Number of new points that have a second normal.
 fn further_normals_of_new(refined: &Refined) -> usize {
-    let second = |i: usize| {
-        ["nx2", "ny2", "nz2"]
-            .iter()
-            .any(|name| crate::curves::floats(&refined.points, name)[i] != 0.0)
-    };
+    let second =
+        |i: usize| ["nx2", "ny2", "nz2"].iter().any(|name| floats(&refined.points, name)[i] != 0.0);
     new_points(refined).filter(|&i| second(i)).count()
 }
 
@@ -163,7 +180,7 @@ fn lengths_of_further_normals_do_not_matter() {
     let mut long = cloud.clone();
     for name in ["nx2", "ny2", "nz2"] {
         for i in 0..long.len() {
-            let value = crate::curves::floats(&cloud, name)[i];
+            let value = floats(&cloud, name)[i];
             set_float(&mut long, name, i, 8.0 * value);
         }
     }
