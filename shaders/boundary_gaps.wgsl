@@ -9,6 +9,9 @@
 /// Number of such points.
 @group(0) @binding(5) var<storage, read_write> gap_count: atomic<u32>;
 
+/// Gaps of triangles are narrower: π less what rounding may take.
+const STRAIGHT: f32 = 3.1412785;
+
 @compute @workgroup_size(64)
 fn boundary_gaps(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let p = linear_index(id, groups);
@@ -21,6 +24,7 @@ fn boundary_gaps(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
         return;
     }
     var widest = -1.0;
+    var narrowest = TAU;
     var begin = 0u;
     var end = 0u;
     for (var i = first; i < after; i++) {
@@ -29,13 +33,15 @@ fn boundary_gaps(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
         let to_entry = ring_entries[select(i + 1u, first, last)];
         let to = bitcast<f32>(to_entry.y);
         let angle = select(to, to + TAU, last) - bitcast<f32>(from_entry.y);
+        narrowest = min(narrowest, angle);
         if angle > widest {
             widest = angle;
             begin = from_entry.x;
             end = to_entry.x;
         }
     }
-    if widest > bitcast<f32>(dispatch.x) {
+    // A line of points has no boundary.
+    if widest > bitcast<f32>(dispatch.x) && narrowest < STRAIGHT {
         let at = atomicAdd(&gap_count, 1u);
         if at < dispatch.y {
             gaps[at] = vec4(p, begin, end, bitcast<u32>(widest));

@@ -105,3 +105,7 @@ fn near_radius(p: u32) -> f32 {
     // No branch: drivers may compile anew for every level where one depends on a uniform.
     return params.lambda1 * select(radius, min(radius, NATURAL * sqrt(farthest)), params.level == 1u);
 }
+
+fn curve_word(at: u32) -> u32 {
+    return curves[at];
+}

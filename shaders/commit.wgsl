@@ -73,3 +73,7 @@ fn set_parents(rank: u32, corners: vec3<u32>) {
     parents[first + 1u] = corners.y;
     parents[first + 2u] = corners.z;
 }
+
+fn curve_word(at: u32) -> u32 {
+    return curves[at];
+}

@@ -9,6 +9,7 @@
 @group(0) @binding(3) var<storage, read> ring_starts: array<u32>;
 @group(0) @binding(4) var<storage, read> candidate_positions: array<vec4<f32>>;
 @group(0) @binding(5) var<storage, read> candidate_normals: array<vec4<f32>>;
+/// The candidates by cell, then the table of curves: drivers may allow no more than ten buffers.
 @group(0) @binding(6) var<storage, read> grid: array<u32>;
 /// The first member of each class and one more, then the members by class.
 @group(0) @binding(7) var<storage, read> class_members: array<u32>;
@@ -17,7 +18,6 @@
 @group(0) @binding(9) var<storage, read_write> next_radii: array<atomic<u32>>;
 @group(0) @binding(10) var<storage, read_write> arena: array<u32>;
 @group(0) @binding(11) var<storage, read_write> counters: Counters;
-@group(0) @binding(12) var<storage, read> curves: array<u32>;
 
 @compute @workgroup_size(64)
 fn insertion(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -36,7 +36,8 @@ fn insertion(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
     note_cut_loops(p);
 }
 
-/// Takes room in the arena for N', the angles of the candidates and Y; false if there is too little.
+/// Takes room in the arena for N', the angles of the candidates and Y, as if all new points around were seen; false if
+/// there is too little.
 fn allocate(p: u32) -> bool {
     var near_count = 0u;
     var outer_count = 0u;
@@ -48,7 +49,7 @@ fn allocate(p: u32) -> bool {
         }
         let d = offset_of(slot);
         let d2 = dot3(d, d);
-        if d2 < ring.radius * ring.radius && visible(slot) {
+        if d2 < ring.radius * ring.radius {
             let is_near = d2 < near * near && is_apart(d2, ring.radius);
             near_count += u32(is_near);
             outer_count += u32(!is_near);
@@ -190,4 +191,8 @@ fn best_split(p: u32, i: u32) -> u32 {
         }
     }
     return best;
+}
+
+fn curve_word(at: u32) -> u32 {
+    return grid[cell_count() + 1u + params.slots + at];
 }

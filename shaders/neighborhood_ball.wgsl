@@ -130,3 +130,7 @@ fn is_doubtful(u: vec3<f32>, n0: vec3<f32>, n1: vec3<f32>) -> bool {
     let beyond = along > DOUBTFUL_SHARE * (1.0 + dot3(n0, n1)) + 1e-6;
     return sure_neighbors && natural_neighbors && beyond;
 }
+
+fn curve_word(at: u32) -> u32 {
+    return curves[at];
+}

@@ -10,6 +10,7 @@
 @group(0) @binding(4) var<storage, read> ring_entries: array<vec2<u32>>;
 @group(0) @binding(5) var<storage, read> candidate_positions: array<vec4<f32>>;
 @group(0) @binding(6) var<storage, read> candidate_normals: array<vec4<f32>>;
+/// The candidates by cell, then the table of curves: drivers may allow no more than ten buffers.
 @group(0) @binding(7) var<storage, read> grid: array<u32>;
 @group(0) @binding(8) var<storage, read> states: array<u32>;
 /// Bits of the radii at the next level: of the points, then of the slots, by the insertion; then the same by this kernel.
@@ -17,7 +18,6 @@
 /// Members: old points by index, then slots; bits of x and y on the tangent plane; bits of the angle, or NONE.
 @group(0) @binding(10) var<storage, read_write> arena: array<vec4<u32>>;
 @group(0) @binding(11) var<storage, read_write> counters: Counters;
-@group(0) @binding(12) var<storage, read> curves: array<u32>;
 
 /// The accurate neighbourhood N^g, or else the fuzzy one N^f.
 override accurate: bool = true;
@@ -124,4 +124,8 @@ fn add(around: ptr<function, Around>, id: u32) {
     }
     arena[(*around).first + (*around).size] = vec4(id, bitcast<u32>(x * scale), bitcast<u32>(y * scale), 0u);
     (*around).size += 1u;
+}
+
+fn curve_word(at: u32) -> u32 {
+    return grid[cell_count() + 1u + params.slots + at];
 }

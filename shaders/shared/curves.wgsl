@@ -1,18 +1,18 @@
 // Creases and boundaries of a level: records, segments and a grid of these, as the host wrote them.
 // Twin: crates/engine/src/curves.rs
 //
-// Expects `curves: array<u32>` and `points`.
+// Expects `points` and `curve_word`: a word of the table, wherever the kernel has it.
 
 /// Whether the cloud has creases or boundaries. Without them nothing of this is read.
 override with_curves: bool = false;
 
 // Words of the table: a header, then records, segments, first entry of each cell and one more, entries of cells.
-const HEADER_WORDS: u32 = 12u;
+const HEADER_WORDS: u32 = 16u;
 const RECORD_WORDS: u32 = 24u;
 const SEGMENT_WORDS: u32 = 4u;
 
 fn curve_vector(at: u32) -> vec3<f32> {
-    return vec3(bitcast<f32>(curves[at]), bitcast<f32>(curves[at + 1u]), bitcast<f32>(curves[at + 2u]));
+    return vec3(bitcast<f32>(curve_word(at)), bitcast<f32>(curve_word(at + 1u)), bitcast<f32>(curve_word(at + 2u)));
 }
 
 /// First word of a record. The records of new points on curves come after those of the level.
@@ -35,48 +35,48 @@ fn record_conormal(record: u32) -> vec3<f32> {
 
 /// The point of a record, of those of the level.
 fn record_point(record: u32) -> u32 {
-    return curves[record_at(record) + 3u];
+    return curve_word(record_at(record) + 3u);
 }
 
 /// The records next to it on the curves that bound its sheet, or NONE.
 fn record_partners(record: u32) -> vec2<u32> {
-    return vec2(curves[record_at(record) + 7u], curves[record_at(record) + 11u]);
+    return vec2(curve_word(record_at(record) + 7u), curve_word(record_at(record) + 11u));
 }
 
 /// First record of the point of a record.
 fn record_first(record: u32) -> u32 {
-    return curves[record_at(record) + 12u];
+    return curve_word(record_at(record) + 12u);
 }
 
 /// Number of records of the point: 1 on a boundary.
 fn record_sides(record: u32) -> u32 {
-    return curves[record_at(record) + 13u];
+    return curve_word(record_at(record) + 13u);
 }
 
 /// The segment on which this step puts it, or NONE.
 fn record_segment(record: u32) -> u32 {
-    return curves[record_at(record) + 14u];
+    return curve_word(record_at(record) + 14u);
 }
 
 /// The smallest radius of a new point on a curve.
 fn record_radius(record: u32) -> f32 {
-    return bitcast<f32>(curves[record_at(record) + 15u]);
+    return bitcast<f32>(curve_word(record_at(record) + 15u));
 }
 
 /// The points at the ends of the segment on which a new point lies, the nearer first.
 fn record_ends(record: u32) -> vec2<u32> {
-    return vec2(curves[record_at(record) + 18u], curves[record_at(record) + 19u]);
+    return vec2(curve_word(record_at(record) + 18u), curve_word(record_at(record) + 19u));
 }
 
 /// ρ of a new point on a curve.
 fn record_rho(record: u32) -> f32 {
-    return bitcast<f32>(curves[record_at(record) + 20u]);
+    return bitcast<f32>(curve_word(record_at(record) + 20u));
 }
 
 /// Angles in its frame between which its fan lies.
 fn record_wedge(record: u32) -> vec2<f32> {
     let at = record_at(record) + 16u;
-    return vec2(bitcast<f32>(curves[at]), bitcast<f32>(curves[at + 1u]));
+    return vec2(bitcast<f32>(curve_word(at)), bitcast<f32>(curve_word(at + 1u)));
 }
 
 /// The first vector points away from the sheet, so that the angles of a fan never wrap around.

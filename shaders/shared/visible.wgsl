@@ -127,6 +127,9 @@ fn is_joined(record: u32, other: u32) -> bool {
 }
 
 fn is_fenced(center: Seen, other: Seen, d: vec3<f32>, d2: f32) -> bool {
+    if dot3(center.normal, other.normal) > softest_crease() {
+        return false;
+    }
     let middle = center.position + d * 0.5;
     let reach = AROUND * sqrt(d2) + longest_half();
     var walk = segment_walk(middle, reach);

@@ -161,6 +161,14 @@ impl Step {
         table(self.features().unwrap_or(&Features::default()), &self.level.curve_points)
     }
 
+    /// The candidates by cell, with the table of curves behind the last slot's place.
+    pub(crate) fn candidate_grid_words(&self) -> Vec<u32> {
+        let grid = &self.state.candidate_grid;
+        let mut words = grid_words(grid);
+        words.resize(grid.starts.len() + self.state.candidates.len(), 0);
+        [words, self.curves()].concat()
+    }
+
     /// The states of the slots before the first class.
     pub(crate) fn initial_states(&self) -> Vec<u32> {
         let c = &self.state.candidates;

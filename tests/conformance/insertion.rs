@@ -1,8 +1,7 @@
 //! The insertion kernel, class by class, on the reference's candidates and classes.
 
 use crate::harness::{
-    ARENA_WORDS, Device, ON_CURVE, Step, USED, compare, compare_equal, device, grid_words, must,
-    steps,
+    ARENA_WORDS, Device, ON_CURVE, Step, USED, compare, compare_equal, device, must, steps,
 };
 use crate::tolerance::RADIUS;
 use surfine::records::Counters;
@@ -21,19 +20,18 @@ fn insert(device: &mut Device, step: &Step, arrange: fn(&mut Vec<u32>)) -> (Vec<
     let ring_starts = device.buffer("ring starts", &step.state.rings.starts);
     let positions = device.buffer("positions", &step.candidate_positions());
     let normals = device.buffer("normals", &step.candidate_normals());
-    let grid = device.buffer("grid", &grid_words(&step.state.candidate_grid));
+    let grid = device.buffer("grid", &step.candidate_grid_words());
     let members = device.buffer("members", &[starts.as_slice(), &lists.concat()].concat());
     let guarded = [bytemuck::cast_slice(&step.initial_states()), &[0xa5u8; 64][..]].concat();
     let states = device.buffer("states", &guarded);
     let radii = device.output::<u32>("radii", n + slots);
     let arena = device.output::<u32>("arena", ARENA_WORDS);
-    let curves = device.buffer("curves", &step.curves());
     for class in 0..lists.len() {
         let counters = device.output::<u32>("counters", size_of::<Counters>() / 4);
         let count = lists[class].len();
         let words = [class as u32 + 1, starts[class], count as u32, lists.len() as u32];
         let inputs = [&points, &ring_starts, &positions, &normals, &grid, &members];
-        let outputs = [&states, &radii, &arena, &counters, &curves];
+        let outputs = [&states, &radii, &arena, &counters];
         device.run(step.run("insertion", words, count), &[&inputs[..], &outputs].concat());
         let counters = device.read::<Counters>(&counters, 1)[0];
         assert_eq!(counters.cut_loops, 0, "{}", step.name);

@@ -1,6 +1,6 @@
 //! The `next_ring` kernel on the reference's decisions.
 
-use crate::harness::{ARENA_WORDS, FREE, USED, compare, device, grid_words, must, steps};
+use crate::harness::{ARENA_WORDS, FREE, USED, compare, device, must, steps};
 use crate::tolerance::RADIUS;
 use surfine::records::Counters;
 
@@ -15,7 +15,7 @@ fn covers_are_those_of_the_reference() {
         let entries = device.buffer("entries", &step.ring_entries());
         let positions = device.buffer("positions", &step.candidate_positions());
         let normals = device.buffer("normals", &step.candidate_normals());
-        let grid = device.buffer("grid", &grid_words(&state.candidate_grid));
+        let grid = device.buffer("grid", &step.candidate_grid_words());
         // Slots that nobody inserted are free or were tried: both must be seen as not there.
         let mut states = step.initial_states();
         for (slot, own) in states.iter_mut().enumerate() {
@@ -26,7 +26,6 @@ fn covers_are_those_of_the_reference() {
             }
         }
         let states = device.buffer("states", &states);
-        let curves = device.buffer("curves", &step.curves());
         let mut radii = [state.insertion.radii.as_slice(), &state.insertion.slot_radii].concat();
         radii.resize(2 * (n + slots), 0.0);
         let guarded = [bytemuck::cast_slice(&radii), &[0xa5u8; 64][..]].concat();
@@ -35,7 +34,7 @@ fn covers_are_those_of_the_reference() {
         let counters = device.output::<u32>("counters", size_of::<Counters>() / 4);
         let rings = [&points, &starts, &entries];
         let candidates = [&positions, &normals, &grid, &states];
-        let outputs = [&radii, &arena, &counters, &curves];
+        let outputs = [&radii, &arena, &counters];
         let buffers = [&rings[..], &candidates, &outputs].concat();
         device.run(step.run("next_ring", [0, n as u32, 0, 0], n), &buffers);
 

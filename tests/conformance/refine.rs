@@ -244,7 +244,7 @@ fn a_device_of_too_small_limits_is_an_error() {
     let adapter = surfine::choose_adapter(None).expect("the suite has an adapter");
     let opened = pollster::block_on(adapter.request_device(&Default::default()));
     let (own_device, queue) = opened.expect("the adapter opens");
-    // The default limits allow eight storage buffers a stage; the insertion has eleven.
+    // The default limits allow eight storage buffers a stage; the insertion has ten.
     let error = Refiner::with_device(own_device, queue).expect_err("the limits are too small");
     assert!(error.to_string().contains("storage"), "{error}");
 }

@@ -6,7 +6,7 @@ use surfine_features::{CurvePoint, Features, Record};
 use surfine_points::Vec3;
 
 /// Words of the header.
-pub const HEADER_WORDS: usize = 12;
+pub const HEADER_WORDS: usize = 16;
 /// Words of a record.
 pub const RECORD_WORDS: usize = 24;
 /// Words of a segment.
@@ -27,6 +27,8 @@ pub fn table(features: &Features, new: &[CurvePoint]) -> Vec<u32> {
     words.extend(grid.shape.bits);
     words.extend([grid.shape.cell, reach].map(f32::to_bits));
     words.extend([segments, starts, starts + grid.starts.len()].map(|at| at as u32));
+    words.push(features.softest().to_bits());
+    words.resize(HEADER_WORDS, 0);
     for (i, record) in features.records.iter().enumerate() {
         let new = i.checked_sub(features.old).map(|rank| &new[rank]);
         words.extend(record_words(record, new));

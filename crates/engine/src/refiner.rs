@@ -77,7 +77,7 @@ impl Refiner {
     /// `wgpu::Features::PASSTHROUGH_SHADERS`; see [`Mode`](crate::Mode).
     ///
     /// # Errors
-    /// A kernel is refused, for instance because the device's limits are below eleven storage buffers a stage.
+    /// A kernel is refused, for instance because the device's limits are below ten storage buffers a stage.
     pub fn with_device(device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, Error> {
         Self::with_gpu(Gpu::from_device(device, queue))
     }

@@ -210,6 +210,21 @@ impl Step<'_> {
         commands.finish()
     }
 
+    /// Copies the table of curves behind the candidates' grid: the kernels that read both have no binding left for it.
+    fn append_curves(&mut self) -> Result<(), Error> {
+        if self.params.records == 0 {
+            return Ok(());
+        }
+        let at = WORD * (u64::from(self.cells()) + 1 + u64::from(self.params.slots));
+        let bytes = self.buffers.curves.size();
+        self.buffers.grid.grow(self.gpu, at + bytes, at)?;
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        let (curves, grid) = (self.buffers.curves.raw(), self.buffers.grid.raw());
+        encoder.copy_buffer_to_buffer(curves, 0, grid, at, bytes);
+        self.gpu.queue.submit([encoder.finish()]);
+        Ok(())
+    }
+
     /// `neighborhood`: the rings. Returns the counters.
     pub(crate) fn neighborhood(&mut self) -> Result<Counters, Error> {
         let n = self.params.points;
@@ -344,6 +359,7 @@ impl Step<'_> {
     /// `conflicts`: the candidates by cell, then the conflict graph.
     pub(crate) fn conflicts(&mut self) -> Result<(), Error> {
         self.sort_into_grid("grid_candidates", self.params.slots)?;
+        self.append_curves()?;
         let n = u64::from(self.params.points);
         self.buffers.conflict_blocks.reserve(self.gpu, 2 * WORD * n)?;
         self.buffers.mirror_heads.reserve(self.gpu, WORD * n)?;
@@ -468,7 +484,7 @@ impl Step<'_> {
         commands.clear(&b.next_radii, 2 * (u64::from(points) + u64::from(slots)));
         let inputs = [&b.points, &b.ring_starts, &b.candidate_positions, &b.candidate_normals];
         let lists = [&b.grid, &b.class_members];
-        let outputs = [&b.states, &b.next_radii, &b.arena, &b.counters, &b.curves];
+        let outputs = [&b.states, &b.next_radii, &b.arena, &b.counters];
         let kernel = self.kernels.get("insertion");
         let insertion = commands.bind(kernel, &[&inputs[..], &lists, &outputs].concat());
         let classes = starts.len() as u32 - 1;
@@ -511,7 +527,7 @@ impl Step<'_> {
         commands.clear(&b.counters, words_of(&b.counters).into());
         let rings = [&b.points, &b.ring_starts, &b.ring_entries];
         let candidates = [&b.candidate_positions, &b.candidate_normals, &b.grid, &b.states];
-        let outputs = [&b.next_radii, &b.arena, &b.counters, &b.curves];
+        let outputs = [&b.next_radii, &b.arena, &b.counters];
         let kernel = self.kernels.get("next_ring");
         let bound = commands.bind(kernel, &[&rings[..], &candidates, &outputs].concat());
         for first in (0..n).step_by(part as usize) {

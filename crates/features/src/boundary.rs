@@ -10,6 +10,9 @@ use surfine_points::{Boundary, PointSet, RefineParams};
 /// Chains of fewer segments are no boundary: closed irregular clouds have single wide gaps.
 const SHORTEST_CHAIN: usize = 4;
 
+/// Gaps of triangles are narrower: π less what rounding may take.
+pub const STRAIGHT: f32 = 3.141_278_5;
+
 /// The widest gap of a ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {
@@ -24,7 +27,8 @@ pub struct Gap {
 }
 
 impl Gap {
-    /// The widest gap of a ring that is sorted by angle, the first of equals. None with fewer than two members.
+    /// The widest gap of a ring that is sorted by angle, the first of equals. None where no two members have the gap of a
+    /// triangle: a line of points has no boundary.
     pub fn widest(
         point: u32,
         ring: impl ExactSizeIterator<Item = (u32, f32)> + Clone,
@@ -35,13 +39,15 @@ impl Gap {
         let (first, first_angle) = ring.clone().next()?;
         let nexts = ring.clone().skip(1).chain([(first, first_angle + TAU)]);
         let mut widest: Option<Self> = None;
+        let mut narrowest = TAU;
         for ((begin, from), (end, to)) in ring.zip(nexts) {
             let angle = to - from;
+            narrowest = narrowest.min(angle);
             if widest.is_none_or(|w| angle > w.angle) {
                 widest = Some(Self { point, begin, end, angle });
             }
         }
-        widest
+        widest.filter(|_| narrowest < STRAIGHT)
     }
 }
 

@@ -16,7 +16,7 @@ mod records;
 mod segments;
 mod topology;
 
-pub use boundary::{Gap, may_be_boundary};
+pub use boundary::{Gap, STRAIGHT, may_be_boundary};
 pub use curve::CurvePoint;
 pub use fold::{Folded, Refinement, fold};
 pub use records::Records;
@@ -156,19 +156,30 @@ impl Features {
         self.by_point_of(0..self.old, points)
     }
 
+    /// Cosine of half the angle between the two sides where a crease is softest: points whose normals are nearer to each other
+    /// lie on one side.
+    pub fn softest(&self) -> f32 {
+        let creases = self.segments.iter().filter(|s| !s.is_boundary());
+        let normal = |r: u32| self.records[r as usize].normal;
+        let cosines = creases.flat_map(|s| [0, 1].map(|end| [s.sides[0][end], s.sides[1][end]]));
+        let largest = cosines.map(|[a, b]| normal(a).dot(normal(b))).fold(-1.0, f32::max);
+        (0.5 * (1.0 + largest)).max(0.0).sqrt()
+    }
+
     /// The crease segments of the level by the cell of their middle; and half the length of the longest. Nothing lies
     /// beyond a boundary that its segments could hide.
     pub fn segment_grid(&self) -> (Grid, f32) {
         let creases = (0u32..).zip(&self.segments).filter(|(_, s)| !s.is_boundary());
         let ends = |s: &Segment| s.sides[0].map(|r| self.records[r as usize].position);
-        let (mut ids, mut middles, mut lengths) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut ids, mut middles, mut longest) = (Vec::new(), Vec::new(), 0.0f32);
         for (id, [a, b]) in creases.map(|(id, s)| (id, ends(s))) {
             ids.push(id);
             middles.push((a + b) * 0.5);
-            lengths.push((b - a).length().max(1e-30));
+            longest = longest.max((b - a).length());
         }
-        let longest = lengths.iter().copied().fold(0.0, f32::max);
-        let shape = GridShape::fit(&middles, &lengths);
+        // Queries reach half of the longest segment farther than anything else: in larger cells they visit few of them.
+        let low = middles.iter().copied().reduce(Vec3::min).unwrap_or(Vec3::ZERO);
+        let shape = GridShape::with_cell(low, 2.0 * longest.max(1e-30), middles.len());
         (Grid::build(shape, ids.into_iter().zip(middles)), 0.5 * longest)
     }
 }

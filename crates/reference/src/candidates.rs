@@ -11,7 +11,7 @@ use surfine_features::Record;
 use surfine_points::RefineParams;
 
 /// A fan triangle needs a gap below π(1 - 1e-4) radians: at π the fan has no triangle there.
-pub const WIDEST_GAP: f32 = 3.141_278_5;
+pub const WIDEST_GAP: f32 = surfine_features::STRAIGHT;
 
 /// A triangle between a point and both its neighbours on a curve has a gap of no more than 150°, but at corners, radians.
 pub const WIDEST_SHEET: f32 = 2.617_994;

@@ -33,6 +33,8 @@ pub struct Curves {
     grid: Grid,
     /// Half of the longest segment.
     reach: f32,
+    /// Points of a larger cosine between their normals lie on one side of every crease.
+    softest: f32,
 }
 
 /// A point of the level or a new one, as others see it.
@@ -51,7 +53,8 @@ impl Curves {
     pub fn new(features: Features, points: usize) -> Self {
         let (grid, reach) = features.segment_grid();
         let record_of = features.by_point(points);
-        Self { features, record_of, grid, reach }
+        let softest = features.softest();
+        Self { features, record_of, grid, reach, softest }
     }
 
     fn record(&self, index: u32) -> &Record {
@@ -197,6 +200,9 @@ impl<'a> View<'a> {
     }
 
     fn is_fenced(&self, curves: &Curves, other: Seen, d: Vec3, d2: f32) -> bool {
+        if self.center.normal.dot(other.normal) > curves.softest {
+            return false;
+        }
         let middle = self.center.position + d * 0.5;
         let reach = AROUND * d2.sqrt() + curves.reach;
         self.fences.iter().any(|&s| {
