@@ -76,20 +76,20 @@ then refines. From the left: the hole, the fill, three steps, and the true surfa
 and new points on the edges come with both normals.""",
         [
             "surfine refine data/points/fandisk-3000-crease.ply -o fandisk.ply --levels 4 -q",
-            "surfine render data/points/fandisk-3000-crease.ply fandisk.ply data/mesh/fandisk.ply -o figure-10.png --size 480x480"
-            " --view iso --caption '3 000 points, 497 on creases' --caption 'after 4 steps' --caption 'true surface'",
+            "surfine render data/points/fandisk-3000-crease.ply fandisk.ply -o figure-10.png --size 600x600 --view iso"
+            " --caption '3 000 points, 497 on creases' --caption 'after 4 steps'",
             "surfine evaluate fandisk.ply --truth data/mesh/fandisk.ply --input data/points/fandisk-3000-crease.ply",
         ],
     ),
     (
         "Section 6: boundaries",
         """The paper treats the ends of an open surface as curves of their own. On the left three steps that take the surface for closed: the
-rim of the neck is eaten away; in the middle with the boundary; on the right the true surface.""",
+rim of the neck is eaten away; on the right with the boundary.""",
         [
             "surfine refine data/points/face-4000-boundary.ply -o closed.ply --levels 3 -q --closed",
             "surfine refine data/points/face-4000-boundary.ply -o open.ply --levels 3 -q",
-            "surfine render closed.ply open.ply data/mesh/face.ply -o section-6.png --size 480x300 --eye 0,-0.62,0.75"
-            " --target 0,-0.36,0.1 --caption 'taken for closed' --caption 'with its boundary' --caption 'true surface'",
+            "surfine render closed.ply open.ply -o section-6.png --size 600x260 --eye 0.28,-0.5,0.6"
+            " --target 0.1,-0.38,0.15 --caption 'taken for closed' --caption 'with its boundary'",
             "surfine evaluate closed.ply --truth data/mesh/face.ply",
             "surfine evaluate open.ply --truth data/mesh/face.ply",
         ],
