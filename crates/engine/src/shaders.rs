@@ -71,6 +71,7 @@ pub const SHADERS: &[Shader] = &[
         "segments",
         "visible",
         "new_ring",
+        "choice",
         "discard",
         "next_radii",
         "cut_loops"
