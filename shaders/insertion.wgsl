@@ -1,6 +1,7 @@
 // insertion: completes the new neighbourhood N' of each point of one class (section 5).
 // Twin: crates/reference/src/insertion.rs
-// The operations on N' are in shared/new_ring.wgsl, the choice of a candidate in shared/choice.wgsl, eq. 11 is in shared/discard.wgsl, the radii in shared/next_radii.wgsl.
+// The operations on N' are in shared/new_ring.wgsl, the choice of a candidate in shared/choice.wgsl, eq. 11 is in
+// shared/discard.wgsl, the radii in shared/next_radii.wgsl.
 // One invocation per point of the class. dispatch: one more than the class, its first member, its size, number of classes.
 //
 // Only candidates that earlier classes inserted are seen, so it does not matter when the members of one class run.

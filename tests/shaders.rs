@@ -422,6 +422,7 @@ fn constants_are_those_of_the_reference() {
         ("new_ring", "SMALLEST_SPLIT", insertion::SMALLEST_SPLIT.to_bits()),
         ("fan_triangle", "WIDEST_GAP", candidates::WIDEST_GAP.to_bits()),
         ("fan_triangle", "WIDEST_SHEET", candidates::WIDEST_SHEET.to_bits()),
+        ("visible", "SAME_PLACE", visible::SAME_PLACE.to_bits()),
         ("visible", "LIKE", visible::LIKE.to_bits()),
         ("visible", "STEEP_SIDE", visible::STEEP.to_bits()),
         ("visible", "BEHIND", visible::BEHIND.to_bits()),

@@ -11,7 +11,8 @@ override curve_bounds: bool = true;
 const HYSTERESIS: f32 = 1.00001;
 /// A candidate nearer than this to an end of its gap, radians, does not split it.
 const SMALLEST_SPLIT: f32 = 1e-3;
-/// A member of N' in the arena: slot, or for a point that only bounds gaps its index after the last slot; bits of its angle on the tangent plane, bits of the gap to the next member.
+/// A member of N' in the arena: slot, or for a point that only bounds gaps its index after the last slot; bits of its
+/// angle on the tangent plane; bits of the gap to the next member.
 const MEMBER_WORDS: u32 = 3u;
 
 struct NewRing {

@@ -4,6 +4,7 @@
 
 /// Radii exceed the distances they must cover by this factor, so that rounding can't lose the farthest ring.
 const COVER: f32 = 1.02;
+
 /// Makes the next radius of a slot at least this.
 fn cover(slot: u32, distance: vec3<f32>) {
     atomicMax(&next_radii[params.points + slot], bitcast<u32>(COVER * sqrt(dot3(distance, distance))));

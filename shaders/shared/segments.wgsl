@@ -1,4 +1,4 @@
-// Segments of creases and boundaries, and a walk over those near a place. Twin: `Curves` in crates/reference/src/visible.rs
+// Segments of creases, and a walk over those near a place. Twin: `Curves` in crates/reference/src/visible.rs
 //
 // Expects what curves.wgsl has.
 

@@ -6,6 +6,8 @@
 override separating_segments: bool = true;
 override valid_sides: bool = true;
 
+/// Squared distances below have no direction: the smallest normal numbers are near.
+const SAME_PLACE: f32 = 1e-37;
 /// A point belongs to a side only if their normals differ by less than this cosine says,
 const LIKE: f32 = 0.3;
 /// the sine of its elevation over the side's tangent plane is below this,
@@ -74,7 +76,11 @@ fn in_wedge(record: u32, d: vec3<f32>) -> bool {
 /// its fan.
 fn side_of(record: u32, other: Seen) -> u32 {
     let d = other.position - record_position(record);
-    let u = d * (1.0 / sqrt(dot3(d, d)));
+    let d2 = dot3(d, d);
+    if d2 < SAME_PLACE {
+        return NONE;
+    }
+    let u = d * (1.0 / sqrt(d2));
     let first = record_first(record);
     let sides = record_sides(record);
     if sides == 1u {
@@ -148,7 +154,7 @@ fn is_fenced(center: Seen, other: Seen, d: vec3<f32>, d2: f32) -> bool {
 fn separates(segment: u32, a: Seen, b: Seen) -> bool {
     let one = segment_side(segment, 0u);
     let two = segment_side(segment, 1u);
-    if two.x == NONE || touches(segment, one, a.record) || touches(segment, one, b.record) || !crosses(one, a, b) {
+    if touches(segment, one, a.record) || touches(segment, one, b.record) || !crosses(one, a, b) {
         return false;
     }
     return parts(one.x, two.x, a, b) || parts(one.y, two.y, a, b);

@@ -37,7 +37,8 @@ Examples:
   surfine refine scan.ply -o fine.ply --json | jq .points_per_second
 
 The points of IN come first in FILE, in their order and unchanged but for their radii; the new points
-follow level by level. Both backends give the same bytes if the adapter's mode is exact
+follow level by level. Points on creases have further normals
+nx2 ny2 nz2 and, at corners, nx3 ny3 nz3 (zero elsewhere), or a record for each normal; creases stay sharp. Both backends give the same bytes if the adapter's mode is exact
 and its driver rounds division and square root correctly. All parameters
 are free of scale; lengths have the unit of IN.";
 
@@ -90,7 +91,8 @@ pub(crate) enum Command {
 #[derive(Debug, Args)]
 #[command(after_help = REFINE_EXAMPLES)]
 pub(crate) struct RefineArgs {
-    /// PLY file of points: x y z, nx ny nz (unit length, outward), radius; more properties are kept
+    /// PLY file of points: x y z, nx ny nz (unit length, outward), radius; nx2 ny2 nz2 and nx3 ny3 nz3 on creases and
+    /// corners; more properties are kept
     #[arg(value_name = "IN")]
     pub(crate) input: PathBuf,
     /// PLY file to write, not IN; it appears whole or not at all
@@ -114,7 +116,7 @@ pub(crate) struct RefineArgs {
     /// Measure the angle between new neighbors straight instead of along the curved surface: a little faster
     #[arg(long)]
     plain_angle: bool,
-    /// Keep to the text of the paper: without the rules for irregular samples and close sheets
+    /// Keep to the text of the paper: without any rule of --without. Boundaries are still found (see --closed)
     #[arg(long)]
     literal: bool,
     /// Leave out one rule beyond the paper; may be given several times

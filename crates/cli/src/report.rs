@@ -214,7 +214,7 @@ impl Display for Curves {
         if self.boundary_segments > 0 {
             let points = counted(self.boundary_points, "boundary point", "boundary points");
             let segments = counted(self.boundary_segments, "segment", "segments");
-            writeln!(f, "borders  {points}, {segments}")?;
+            writeln!(f, "boundary {points}, {segments}")?;
         }
         Ok(())
     }

@@ -62,15 +62,15 @@ fn bits(v: Vec3) -> [u32; 3] {
     v.to_array().map(f32::to_bits)
 }
 
-/// Writes the table of a step into its buffer.
+/// Writes the table of a step into its buffer and returns its bytes.
 pub(crate) fn upload(
     gpu: &Gpu,
     buffer: &mut Buffer,
     features: &Features,
     new: &[CurvePoint],
-) -> Result<(), Error> {
+) -> Result<u64, Error> {
     let words = table(features, new);
     buffer.reserve(gpu, 4 * words.len() as u64)?;
     gpu.queue.write_buffer(buffer.raw(), 0, bytemuck::cast_slice(&words));
-    Ok(())
+    Ok(4 * words.len() as u64)
 }

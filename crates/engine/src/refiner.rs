@@ -2,15 +2,18 @@
 
 use crate::buffers::{self, Buffer};
 use crate::commands::Uniforms;
+use crate::curves;
 use crate::records::{Counters, LEVEL_BITS, Params, Point};
 use crate::scan::Scan;
 use crate::stages::{Buffers, Constants, Kernels, Sizing, Step, constants};
 use crate::{Error, Gpu, choose_adapter};
 use std::time::{Duration, Instant};
-use surfine_features::{Cloud, Features, Folded, Records, Refinement, fold, may_be_boundary};
+use surfine_features::{
+    Cloud, Features, Folded, Records, Refinement, check_marks, fold, may_be_boundary,
+};
 use surfine_points::{
-    Boundary, CurveCounts, Grid, GridShape, LevelReport, PointSet, Progress, RefineParams, Refined,
-    Vec3,
+    Boundary, CurveCounts, Grid, GridShape, Invalid, LevelReport, PointSet, Progress, RefineParams,
+    Refined, Vec3,
 };
 
 /// A device with compiled kernels and buffers, ready to refine one cloud after the other.
@@ -35,7 +38,7 @@ pub struct GpuRefined {
     pub points: wgpu::Buffer,
     /// The three corners of each new point's triangle, `u32` indices of points; entry 0 belongs to the first new point.
     pub parents: wgpu::Buffer,
-    /// Number of points at each level: entry 0 is the input, the last entry is all of them.
+    /// Number of records at each level: entry 0 is the input, the last entry is all of them.
     pub level_sizes: Vec<usize>,
     /// Radii of the points of each level if `RefineParams::keep_radii` asks for them; else empty.
     pub level_radii: Vec<Vec<f32>>,
@@ -158,6 +161,7 @@ impl Refiner {
     ) -> Result<GpuRefined, Error> {
         params.validate()?;
         points.validate()?;
+        check_marks(points, params)?;
         self.prepare(params)?;
         let gpu = self.gpu.clone();
         let result = gpu.guarded(|| self.run_levels(points, params, progress));
@@ -183,7 +187,7 @@ impl Refiner {
         let mut level_radii = Vec::new();
         level_radii.extend(params.keep_radii.then(|| radii.clone()));
         let mut reports = Vec::new();
-        let mut curves = CurveCounts::default();
+        let mut counts = CurveCounts::default();
         for level in 1..=params.levels {
             let count = level_sizes[level_sizes.len() - 1];
             let at = Progress { level, levels: params.levels, stage: "", points: count };
@@ -196,16 +200,20 @@ impl Refiner {
                 rings = self.find_boundary(params, step, input, &mut features, &mut clock)?;
             }
             if level == 1 {
-                curves = features.counts();
+                counts = features.counts();
             }
             let new = if Features::splits_at(level, params.rules) {
                 features.split()
             } else {
                 Vec::new()
             };
-            crate::curves::upload(&self.gpu, &mut self.buffers.curves, &features, &new)?;
+            if features.records.len() > MOST_RECORDS {
+                return Err(Invalid::TooMany(features.records.len()).into());
+            }
+            let bytes = curves::upload(&self.gpu, &mut self.buffers.curves, &features, &new)?;
             let input = (level == 1).then_some((&shape, &records));
-            let on_curves = OnCurves { records: features.old as u32, new: new.len() as u32 };
+            let (old, new_count) = (features.old as u32, new.len() as u32);
+            let on_curves = OnCurves { records: old, new: new_count, bytes };
             let earlier = count - records.len();
             let mut report =
                 self.run_step(params, step, input, rings, on_curves, earlier, &mut clock)?;
@@ -229,7 +237,7 @@ impl Refiner {
             level_sizes,
             level_radii,
             reports,
-            curves,
+            curves: counts,
             device_bytes,
             records,
             features,
@@ -248,8 +256,18 @@ impl Refiner {
         let kernels = kernels.iter().find(|(c, _)| *c == constants);
         let (_, kernels) = kernels.expect("they were compiled");
         let params = Params { records: on_curves.records, ..params };
-        let (rules, curve_points) = (refine.rules, on_curves.new);
-        Ok(Step { gpu, kernels, uniforms, buffers, scan, sizing, rules, params, curve_points })
+        Ok(Step {
+            gpu,
+            kernels,
+            uniforms,
+            buffers,
+            scan,
+            sizing,
+            rules: refine.rules,
+            params,
+            curve_points: on_curves.new,
+            curve_bytes: on_curves.bytes,
+        })
     }
 
     /// Finds the boundaries of the input (section 6). The rings that show that there are none serve the first step.
@@ -261,8 +279,8 @@ impl Refiner {
         features: &mut Features,
         clock: &mut Clock<'_>,
     ) -> Result<Option<Rings>, Error> {
-        crate::curves::upload(&self.gpu, &mut self.buffers.curves, features, &[])?;
-        let on_curves = OnCurves { records: features.old as u32, new: 0 };
+        let bytes = curves::upload(&self.gpu, &mut self.buffers.curves, features, &[])?;
+        let on_curves = OnCurves { records: features.old as u32, new: 0, bytes };
         let mut step = self.step(refine, params, on_curves)?;
         clock.start("grid");
         step.upload_grid(&grid_of(shape, records))?;
@@ -384,17 +402,23 @@ impl Refiner {
             level_radii,
         };
         let folded = fold(input, &records, &features, &refinement, params.boundary.property());
+        let mut reports = reports;
+        folded.count_points(&mut reports);
         let Folded { points, parents, level_sizes, level_radii } = folded;
         let device_bytes = Some(device_bytes);
         Ok(Refined { points, parents, level_sizes, level_radii, reports, curves, device_bytes })
     }
 }
 
-/// How many records there are on creases and boundaries, and how many new ones.
+/// Records that fit beside the level in a word of a point.
+const MOST_RECORDS: usize = (1 << (32 - LEVEL_BITS)) - 2;
+
+/// How many records there are on creases and boundaries, how many new ones, and the bytes of their table.
 #[derive(Clone, Copy)]
 struct OnCurves {
     records: u32,
     new: u32,
+    bytes: u64,
 }
 
 /// The rings of the first step.

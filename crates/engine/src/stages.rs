@@ -1,6 +1,6 @@
 //! The stages of one refinement step, as dispatches of their kernels.
 //!
-//! Nothing that grows with the cloud is read back: only [`Counters`], ring and class totals and the number of new
+//! Nothing that grows with the cloud is read back, but for the gaps of possible boundary points: only [`Counters`], ring and class totals and the number of new
 //! points, since buffers are sized on the host. A stage whose buffers turn out too small runs again with larger ones.
 
 use crate::buffers::{Buffer, read_parts};
@@ -132,6 +132,8 @@ pub(crate) struct Step<'a> {
     pub(crate) params: Params,
     /// New points that this step puts on creases and boundaries.
     pub(crate) curve_points: u32,
+    /// Bytes of the table of creases and boundaries: its buffer may be larger.
+    pub(crate) curve_bytes: u64,
 }
 
 impl Step<'_> {
@@ -216,7 +218,7 @@ impl Step<'_> {
             return Ok(());
         }
         let at = WORD * (u64::from(self.cells()) + 1 + u64::from(self.params.slots));
-        let bytes = self.buffers.curves.size();
+        let bytes = self.curve_bytes;
         self.buffers.grid.grow(self.gpu, at + bytes, at)?;
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let (curves, grid) = (self.buffers.curves.raw(), self.buffers.grid.raw());

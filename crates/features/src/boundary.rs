@@ -5,7 +5,7 @@ use glam::Vec3;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::f32::consts::TAU;
 use surfine_points::math::{tangent_frame, unit};
-use surfine_points::{Boundary, PointSet, RefineParams};
+use surfine_points::{Boundary, Invalid, PointSet, RefineParams};
 
 /// Chains of fewer segments are no boundary: closed irregular clouds have single wide gaps.
 const SHORTEST_CHAIN: usize = 4;
@@ -48,6 +48,19 @@ impl Gap {
             }
         }
         widest.filter(|_| narrowest < STRAIGHT)
+    }
+}
+
+/// Checks that the property is there which is to mark the boundary.
+///
+/// # Errors
+/// It is missing.
+pub fn check_marks(points: &PointSet, params: &RefineParams) -> Result<(), Invalid> {
+    match params.boundary.property() {
+        Some(name) if points.attribute(name).is_none() => {
+            Err(Invalid::NoMarks { name: name.into() })
+        }
+        _ => Ok(()),
     }
 }
 

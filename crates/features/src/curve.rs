@@ -7,7 +7,7 @@ use surfine_points::math::unit;
 /// A new radius exceeds the distance to the neighbours on the curve by this factor, as all radii do.
 const COVER: f32 = 1.02;
 /// Cosine of 60°: a boundary that turns more at a point has a corner there, not a tangent.
-const STRAIGHT: f32 = 0.5;
+const CORNER: f32 = 0.5;
 
 /// A new record on a feature curve: one side of a new crease point, or a new boundary point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +38,8 @@ impl Features {
         let mut points = Vec::new();
         for index in 0..self.segments.len() {
             let segment = self.segments[index];
-            let [near_a, near_b] = self.thirds(segment);
+            // Where numbers have no room for a point between the ends the curve stays as it is.
+            let Some([near_a, near_b]) = self.thirds(segment) else { continue };
             let sides = 1 + usize::from(!segment.is_boundary());
             for (third, [near, far]) in [(near_a, [0, 1]), (near_b, [1, 0])] {
                 let first = self.records.len() as u32;
@@ -76,12 +77,15 @@ impl Features {
     pub fn commit(&mut self, first_point: usize) {
         for (i, record) in self.records[self.old..].iter_mut().enumerate() {
             record.point = (first_point + i) as u32;
-            record.segment = NONE;
         }
         let mut next = self.old as u32;
         let mut segments = Vec::new();
         if next < self.records.len() as u32 {
-            for segment in std::mem::take(&mut self.segments) {
+            for (index, segment) in (0u32..).zip(std::mem::take(&mut self.segments)) {
+                if self.records.get(next as usize).is_none_or(|r| r.segment != index) {
+                    segments.push(segment);
+                    continue;
+                }
                 let sides = 1 + u32::from(!segment.is_boundary());
                 let [a, b] = [next, next + sides];
                 let piece = |from: Option<u32>, to: Option<u32>| Segment {
@@ -103,6 +107,7 @@ impl Features {
                 next += 2 * sides;
             }
             self.segments = segments;
+            self.records.iter_mut().for_each(|r| r.segment = NONE);
             self.records.iter_mut().for_each(|r| r.partners = [NONE; 2]);
             for segment in self.segments.clone() {
                 self.join(segment);
@@ -112,11 +117,14 @@ impl Features {
         self.old = self.records.len();
     }
 
-    /// The points at the thirds of a segment's Bézier curve, from its first end on.
-    fn thirds(&self, segment: Segment) -> [Third; 2] {
+    /// The points at the thirds of a segment's Bézier curve, from its first end on; none if any of the four fall together.
+    fn thirds(&self, segment: Segment) -> Option<[Third; 2]> {
         let [a, b] = segment.sides[0].map(|r| self.records[r as usize]);
         let chord = b.position - a.position;
         let length = chord.length();
+        if length == 0.0 {
+            return None;
+        }
         let leave_a = self.tangent(segment, 0, chord) * (length / 3.0);
         let leave_b = self.tangent(segment, 1, -chord) * (length / 3.0);
         // Control points relative to the first end.
@@ -130,12 +138,16 @@ impl Features {
             (position, tangent)
         };
         let [(x, tx), (y, ty)] = [at(1.0 / 3.0), at(2.0 / 3.0)];
-        let middle = (y - x).length();
+        let (x, y) = (a.position + x, a.position + y);
+        let [first, middle, last] =
+            [(a.position, x), (x, y), (y, b.position)].map(|(from, to)| (to - from).length());
         let radius = |to_end: f32| COVER * to_end.max(middle);
-        [
-            Third { position: a.position + x, tangent: tx, radius: radius(x.length()) },
-            Third { position: a.position + y, tangent: ty, radius: radius((y - b3).length()) },
-        ]
+        (first.min(middle).min(last) > 0.0).then(|| {
+            [
+                Third { position: x, tangent: tx, radius: radius(first) },
+                Third { position: y, tangent: ty, radius: radius(last) },
+            ]
+        })
     }
 
     /// Unit tangent of the curve at an end of a segment, into the segment along the chord that leaves there.
@@ -161,7 +173,11 @@ impl Features {
         let back = own.position - self.records[other as usize].position;
         let (c2, b2) = (chord.dot(chord), back.dot(back));
         let turn = chord.dot(back) / (c2 * b2).sqrt();
-        if turn < STRAIGHT { flat(chord) } else { flat(chord * (1.0 / c2) + back * (1.0 / b2)) }
+        if b2 == 0.0 || turn < CORNER {
+            flat(chord)
+        } else {
+            flat(chord * (1.0 / c2) + back * (1.0 / b2))
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use crate::Features;
 use crate::records::{FURTHER, Records, columns};
 use glam::Vec3;
 use std::collections::HashMap;
-use surfine_points::{PointSet, Values};
+use surfine_points::{LevelReport, PointSet, Values};
 
 /// Property that says what a point is: 0 smooth, 1 on a crease, 2 a corner.
 const KIND: &str = "kind";
@@ -63,7 +63,7 @@ pub fn fold(
     if FURTHER.iter().any(|names| columns(input, names).is_some()) {
         set_further_normals(&mut points, first, &sides);
     }
-    if sides.iter().any(|sides| sides.count > 1) {
+    if features.records.iter().any(|record| record.sides > 1) {
         set_column(&mut points, KIND, first, sides.iter().map(|s| s.count.max(1) as u8 - 1));
     }
     if let Some(name) = marks {
@@ -93,6 +93,15 @@ struct Sides {
     count: u32,
     /// Normals of the sides after the first.
     further: Vec<Vec3>,
+}
+
+impl Folded {
+    /// Gives reports that count records the numbers of points.
+    pub fn count_points(&self, reports: &mut [LevelReport]) {
+        for (report, sizes) in reports.iter_mut().zip(self.level_sizes.windows(2)) {
+            (report.points_in, report.points_out) = (sizes[0], sizes[1]);
+        }
+    }
 }
 
 impl Places {
@@ -164,6 +173,15 @@ fn set_further_normals(points: &mut PointSet, first: usize, sides: &[Sides]) {
                 }
             }
         }
+    }
+}
+
+/// Makes the points from the first on smooth ones: without further normals, of kind 0. For new points that others put in.
+pub fn clear_sides(points: &mut PointSet, first: usize) {
+    if FURTHER.iter().any(|names| columns(points, names).is_some()) {
+        let smooth = vec![Sides::default(); points.len() - first];
+        set_further_normals(points, first, &smooth);
+        set_column(points, KIND, first, smooth.iter().map(|_| 0));
     }
 }
 

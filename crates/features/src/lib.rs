@@ -4,8 +4,8 @@
 //! stages of a refinement step run for each record by itself. A boundary point is one record with one side. Records that
 //! follow each other along a curve are joined by [`Segment`]s, which are split at every second step.
 //!
-//! There are few of them (about the root of the number of points), and nothing off the curves bears on them: so all of
-//! this runs on the host, for the CPU reference and the GPU engine alike. What they do to the stages is in
+//! There are few of them (about the root of the number of points), and once they are found nothing off the curves bears on
+//! them: so all of this runs on the host, for the CPU reference and the GPU engine alike. What they do to the stages is in
 //! `crates/reference/src/visible.rs` and its kernels.
 
 mod boundary;
@@ -16,9 +16,9 @@ mod records;
 mod segments;
 mod topology;
 
-pub use boundary::{Gap, STRAIGHT, may_be_boundary};
+pub use boundary::{Gap, STRAIGHT, check_marks, may_be_boundary};
 pub use curve::CurvePoint;
-pub use fold::{Folded, Refinement, fold};
+pub use fold::{Folded, Refinement, clear_sides, fold};
 pub use records::Records;
 
 use glam::Vec3;

@@ -7,6 +7,7 @@ use crate::relax::{refit_normals, relax};
 use crate::{Error, HOLE};
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
+use surfine_features::clear_sides;
 use surfine_points::shapes::natural_radii_of;
 use surfine_points::{Attribute, Interpolation, PointSet, Values};
 use surfine_reference::Level;
@@ -79,6 +80,8 @@ pub(crate) fn fill(points: &PointSet, loops: &[Loop]) -> Result<(PointSet, Vec<F
         spacings.extend_from_slice(&front.spacings);
     }
     filled.extend_attributes(&parents);
+    // Corners on creases have several normals, fill points have one.
+    clear_sides(&mut filled, points.len());
     set_radii(&mut filled, points.len(), &touched, &spacings);
     let hole = filled.attributes.iter_mut().find(|a| a.name == HOLE);
     if let Some(Attribute { values: Values::I32(column), .. }) = hole {

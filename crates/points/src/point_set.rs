@@ -190,6 +190,10 @@ pub enum Invalid {
          farthest natural neighbour"
     )]
     Radius { point: usize, radius: f32 },
+    #[error(
+        "there is no property {name} to mark the boundary: add it, or find the boundary by angle"
+    )]
+    NoMarks { name: String },
     #[error("{0} points are too many for indices of 32 bits: split the cloud, or use fewer levels")]
     TooMany(usize),
 }

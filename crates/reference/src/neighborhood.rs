@@ -1,4 +1,4 @@
-//! One-ring neighbourhoods (section 4). Twin: `shaders/neighborhood.wgsl`.
+//! One-ring neighbourhoods (section 4). Twins: `shaders/neighborhood_*.wgsl`.
 
 use crate::Level;
 use crate::math::{TAU, direction_angle, is_apart};

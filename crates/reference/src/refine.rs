@@ -11,7 +11,7 @@ use crate::next_ring::{Covers, next_ring};
 use crate::{Level, NO_POINT};
 use std::fmt;
 use std::time::{Duration, Instant};
-use surfine_features::{Folded, Records, Refinement, fold};
+use surfine_features::{Folded, Records, Refinement, check_marks, fold};
 use surfine_points::{
     Boundary, Grid, GridShape, Invalid, LevelReport, ParamError, PointSet, Progress, RefineParams,
     Refined,
@@ -74,6 +74,7 @@ pub fn refine_with(
 ) -> Result<Refined, Error> {
     params.validate()?;
     points.validate()?;
+    check_marks(points, params)?;
     let records = Records::split(points)?;
     let mut level = Level::new(&records);
     let mut result = Refined { level_sizes: vec![level.len()], ..Refined::default() };
@@ -118,6 +119,7 @@ pub fn refine_with(
     };
     let features = level.curves.map(|curves| curves.features).unwrap_or_default();
     let folded = fold(points, &records, &features, &refinement, params.boundary.property());
+    folded.count_points(&mut result.reports);
     let Folded { points, parents, level_sizes, level_radii } = folded;
     Ok(Refined { points, parents, level_sizes, level_radii, ..result })
 }

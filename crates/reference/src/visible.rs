@@ -10,6 +10,8 @@ use glam::Vec3;
 use surfine_features::{Features, NONE, Record};
 use surfine_points::{Grid, Rules};
 
+/// Squared distances below have no direction: the smallest normal numbers are near.
+pub const SAME_PLACE: f32 = 1e-37;
 /// A point belongs to a side only if their normals differ by less than this cosine says,
 pub const LIKE: f32 = 0.3;
 /// the sine of its elevation over the side's tangent plane is below this,
@@ -65,16 +67,21 @@ impl Curves {
     /// in its fan.
     fn side(&self, of: u32, other: Seen, rules: Rules) -> u32 {
         let d = other.position - self.record(of).position;
-        let u = d * (1.0 / d.dot(d).sqrt());
+        let d2 = d.dot(d);
+        if d2 < SAME_PLACE {
+            return NONE;
+        }
+        let u = d * (1.0 / d2.sqrt());
         if self.record(of).is_boundary() {
             let like = other.normal.dot(self.record(of).normal) > LIKE;
             return if like && in_wedge(self.record(of), d) { of } else { NONE };
         }
-        let mut best = (NONE, f32::MIN);
-        for k in self.features.sides_of(of) {
+        let sides = self.features.sides_of(of);
+        let mut best = (sides.start as u32, 0.0);
+        for k in sides.clone() {
             let Record { normal, conormal, .. } = self.features.records[k];
             let score = other.normal.dot(normal) + u.dot(conormal);
-            if score > best.1 {
+            if k == sides.start || score > best.1 {
                 best = (k as u32, score);
             }
         }
@@ -112,9 +119,6 @@ impl Curves {
     /// between them over the unfolded sides crosses it.
     fn separates(&self, segment: u32, a: Seen, b: Seen, rules: Rules) -> bool {
         let sides = self.features.segments[segment as usize].sides;
-        if sides[1][0] == NONE {
-            return false;
-        }
         let ends = sides[0].map(|r| self.record(r));
         let touches = |x: Seen| {
             x.record != NONE
