@@ -263,3 +263,41 @@ fn copies_of_points_are_no_creases() {
     let kept = &refined.points.positions[..n];
     assert_eq!(vector_bits(kept), vector_bits(&doubled.positions));
 }
+
+#[test]
+fn a_point_too_near_to_a_crease_point_to_have_a_direction_lies_on_no_side() {
+    let mut cloud = roof(3, |_| true);
+    // The crease point of the middle is at the origin: the square of this distance is no number of 32 bits.
+    let beside =
+        cloud.positions.iter().position(|x| x.x == 0.1 && x.y == 0.0).expect("it is there");
+    cloud.positions[beside] = Vec3::new(1e-25, 0.0, 0.0);
+    assert!(refine_closed(&cloud, 2).points.len() > 2 * cloud.len());
+}
+
+#[test]
+fn boundaries_are_not_split_beyond_what_numbers_can_hold() {
+    let mut cloud = square_grid(6);
+    for x in &mut cloud.positions {
+        // Ten steps would put points closer than f32 has places here.
+        *x = (*x - cloud_middle()) * 5.0 + Vec3::splat(1.0e6);
+    }
+    cloud.radii.iter_mut().for_each(|r| *r *= 5.0);
+    let refined = refine(&cloud, &levels(6));
+    assert!(refined.curves.boundary_segments > 0, "there is no boundary");
+    assert_sound(&refined);
+}
+
+/// Middle of the unit square.
+fn cloud_middle() -> Vec3 {
+    Vec3::new(0.5, 0.5, 0.0)
+}
+
+#[test]
+fn the_kind_is_right_where_no_step_splits_the_crease() {
+    let mut cloud = roof(4, |_| true);
+    let kinds = (0..cloud.len()).map(|i| u8::from(cloud.positions[i].x == 0.0)).collect();
+    cloud.attributes.push(Attribute::new("kind", Values::U8(kinds)));
+    let refined = refine_closed(&cloud, 1);
+    let new = crate::curves::bytes(&refined.points, "kind")[cloud.len()..].iter();
+    assert!(new.clone().count() > 100 && new.copied().all(|kind| kind == 0));
+}
