@@ -195,9 +195,10 @@ fn only_marked_points_are_boundary() {
     for x in new_on_rim(&refined) {
         assert!(x.x < 0.1, "a new rim point at {x}");
     }
-    // A property that is not there marks nothing.
+    // A property that is not there is a mistake.
     cloud.attributes.clear();
-    assert_eq!(refine(&cloud, &marked(1)).curves, CurveCounts::default());
+    let error = surfine_reference::refine(&cloud, &marked(1)).expect_err("there are no marks");
+    assert!(error.to_string().contains("no property rim"), "{error}");
 }
 
 #[test]
