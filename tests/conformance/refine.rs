@@ -277,3 +277,21 @@ fn a_result_left_on_the_device_is_the_one_that_is_read_back() {
         assert_eq!(record.level, u32::from(levels[i]), "level {i}");
     }
 }
+
+#[test]
+fn a_filled_hole_gives_the_bytes_of_the_reference() {
+    let mut device = device();
+    let whole = sample(Shape::Sphere, Sampling::BlueNoise, 1000, 1);
+    let outside = (0..whole.len()).filter(|&i| whole.positions[i].z < 0.85);
+    let (mut positions, mut normals, mut radii) = (Vec::new(), Vec::new(), Vec::new());
+    for i in outside {
+        positions.push(whole.positions[i]);
+        normals.push(whole.normals[i]);
+        radii.push(whole.radii[i]);
+    }
+    let open = PointSet::new(positions, normals, radii);
+    let filled = surfine_holes::fill_holes(&open, &surfine_holes::Choice::All).expect("it fits");
+    assert!(filled.points.len() > open.len() + 20, "nothing was filled");
+    let cloud = Cloud { name: "filled sphere".into(), points: filled.points };
+    check(&mut device, &cloud, &RefineParams { levels: 3, ..RefineParams::default() });
+}
