@@ -260,6 +260,11 @@ impl RefineArgs {
         self.fill_holes.clone().unwrap_or(usual)
     }
 
+    /// Whether the levels are measured: not where nothing would show it.
+    pub(crate) fn shows_stats(&self) -> bool {
+        self.stats && (self.json || !self.quiet)
+    }
+
     /// The parameters; each was checked when it was parsed.
     pub(crate) fn params(&self) -> RefineParams {
         let neighborhood = match self.neighborhood {
@@ -288,7 +293,7 @@ impl RefineArgs {
             lambda2,
             boundary,
             rules,
-            keep_radii: self.stats,
+            keep_radii: self.shows_stats(),
         }
     }
 }

@@ -62,10 +62,10 @@ fn table(loops: &[Row]) -> String {
     let mut text = String::from(
         "  id  points        span  (spacings)   perimeter  (spacings)  turning  kind\n",
     );
-    for Row { id, points, span, span_spacings, perimeter, perimeter_spacings, .. } in loops {
+    for row in loops {
+        let Row { id, points, span, span_spacings, perimeter, perimeter_spacings, .. } = row;
         let _ = write!(text, "{id:>4}  {points:>6}  {span:>10.4}  {span_spacings:>10.1}");
         let _ = write!(text, "  {perimeter:>10.4}  {perimeter_spacings:>10.1}");
-        let row = &loops[*id as usize - 1];
         let _ = writeln!(text, "  {:>6.0}°  {}", row.turning_degrees, row.kind);
     }
     text

@@ -47,8 +47,7 @@ fn refine(args: &RefineArgs, watch: &Watch) -> Result<Report, Failure> {
     let (write, written) = timed(|| write(args, &computed, &source));
     written?;
     let (stats, levels) = timed(|| {
-        let shown = args.stats && (args.json || !args.quiet);
-        shown.then(|| {
+        args.shows_stats().then(|| {
             watch.step("measuring the levels".into());
             Convergence::by_level(&computed.refined)
         })

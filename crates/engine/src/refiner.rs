@@ -13,7 +13,7 @@ use surfine_features::{
 };
 use surfine_points::{
     Boundary, CurveCounts, Grid, GridShape, Invalid, LevelReport, PointSet, Progress, RefineParams,
-    Refined, Vec3,
+    Refined, Vec3, add_stage_time,
 };
 
 /// A device with compiled kernels and buffers, ready to refine one cloud after the other.
@@ -448,12 +448,7 @@ impl Clock<'_> {
 
     fn close(&mut self) {
         if !self.at.stage.is_empty() {
-            // Where boundaries are found the rings are made twice.
-            let (stage, time) = (self.at.stage, self.begin.elapsed());
-            match self.times.iter_mut().find(|(name, _)| *name == stage) {
-                Some((_, sum)) => *sum += time,
-                None => self.times.push((stage, time)),
-            }
+            add_stage_time(&mut self.times, self.at.stage, self.begin.elapsed());
         }
         self.begin = Instant::now();
     }

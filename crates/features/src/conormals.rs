@@ -12,7 +12,7 @@ const FLATNESS: f32 = 0.01;
 pub(crate) fn set_conormals(features: &mut Features, cloud: Cloud<'_>) {
     let shape = GridShape::fit(cloud.positions, cloud.radii);
     let grid = Grid::build(shape, (0u32..).zip(cloud.positions.iter().copied()));
-    let by_point = features.by_point_of(0..features.records.len(), cloud.positions.len());
+    let by_point = features.by_point(cloud.positions.len());
     let mut first = 0;
     while first < features.records.len() {
         let sides = features.sides_of(first as u32);

@@ -59,8 +59,8 @@ pub fn fold(
     points.normals.extend(places.kept.iter().map(|&r| refined.normals[new(r)]));
     points.radii = places.fold_radii(&refined.radii);
     points.extend_attributes(&parents);
-    let sides = places.sides_of_new(split, features, refined);
-    if FURTHER.iter().any(|names| columns(input, names).is_some()) {
+    let sides = places.sides_of_new(first, split.len(), features, refined);
+    if places.merges {
         set_further_normals(&mut points, first, &sides);
     }
     if features.records.iter().any(|record| record.sides > 1) {
@@ -106,7 +106,7 @@ impl Folded {
 
 impl Places {
     fn new(input: &PointSet, split: &Records, features: &Features, records: usize) -> Self {
-        let merges = FURTHER.iter().any(|names| columns(input, names).is_some());
+        let merges = has_further_normals(input);
         let mut leader_of: HashMap<u32, u32> = HashMap::new();
         for record in features.records.iter().filter(|r| merges && r.point as usize >= split.len())
         {
@@ -138,24 +138,29 @@ impl Places {
         folded
     }
 
+    /// What each new point is; `points` and `records` are those of the input.
     fn sides_of_new(
         &self,
-        split: &Records,
+        points: usize,
+        records: usize,
         features: &Features,
         refined: &Refinement,
     ) -> Vec<Sides> {
-        let first = self.point_of.len() - refined.positions.len();
-        let input = self.point_of[..first].iter().max().map_or(0, |&last| last as usize + 1);
         let mut sides = vec![Sides::default(); self.kept.len()];
-        for record in features.records.iter().filter(|r| r.point as usize >= split.len()) {
-            let own = &mut sides[self.point_of[record.point as usize] as usize - input];
+        for record in features.records.iter().filter(|r| r.point as usize >= records) {
+            let own = &mut sides[self.point_of[record.point as usize] as usize - points];
             if own.count > 0 && self.merges {
-                own.further.push(refined.normals[record.point as usize - first]);
+                own.further.push(refined.normals[record.point as usize - records]);
             }
             own.count = record.sides;
         }
         sides
     }
+}
+
+/// Whether further normals are properties.
+fn has_further_normals(points: &PointSet) -> bool {
+    FURTHER.iter().any(|names| columns(points, names).is_some())
 }
 
 /// Gives new points their own further normals, instead of what their corners have in the mean.
@@ -178,7 +183,7 @@ fn set_further_normals(points: &mut PointSet, first: usize, sides: &[Sides]) {
 
 /// Makes the points from the first on smooth ones: without further normals, of kind 0. For new points that others put in.
 pub fn clear_sides(points: &mut PointSet, first: usize) {
-    if FURTHER.iter().any(|names| columns(points, names).is_some()) {
+    if has_further_normals(points) {
         let smooth = vec![Sides::default(); points.len() - first];
         set_further_normals(points, first, &smooth);
         set_column(points, KIND, first, smooth.iter().map(|_| 0));

@@ -22,7 +22,6 @@ pub use fold::{Folded, Refinement, clear_sides, fold};
 pub use records::Records;
 
 use glam::Vec3;
-use surfine_points::math::tangent_frame;
 use surfine_points::{CurveCounts, Grid, GridShape, Rules};
 
 /// No record, no point: the largest index.
@@ -110,9 +109,9 @@ impl Features {
         }
         let segments = segments::crease_segments(cloud, groups);
         features.add_creases(cloud, groups, &segments);
-        conormals::set_conormals(&mut features, cloud);
-        features.set_fans(0..features.records.len());
         features.old = features.records.len();
+        conormals::set_conormals(&mut features, cloud);
+        features.set_fans(0..features.old);
         features
     }
 
@@ -153,7 +152,11 @@ impl Features {
 
     /// The record of each point of the level, [`NONE`] for smooth points.
     pub fn by_point(&self, points: usize) -> Vec<u32> {
-        self.by_point_of(0..self.old, points)
+        let mut by_point = vec![NONE; points];
+        for (i, record) in (0u32..).zip(&self.records[..self.old]) {
+            by_point[record.point as usize] = i;
+        }
+        by_point
     }
 
     /// Cosine of half the angle between the two sides where a crease is softest: points whose normals are nearer to each other
@@ -182,9 +185,4 @@ impl Features {
         let shape = GridShape::with_cell(low, 2.0 * longest.max(1e-30), middles.len());
         (Grid::build(shape, ids.into_iter().zip(middles)), 0.5 * longest)
     }
-}
-
-/// Two unit vectors that span the tangent plane of a point: those of its record, if it lies on a feature curve.
-pub fn frame(normal: Vec3, record: Option<&Record>) -> (Vec3, Vec3) {
-    record.map_or_else(|| tangent_frame(normal), Record::frame)
 }

@@ -92,13 +92,4 @@ impl Features {
             record.wedge = [from - BEYOND, to + BEYOND];
         }
     }
-
-    /// The record of each point, of those in a range.
-    pub(crate) fn by_point_of(&self, records: std::ops::Range<usize>, points: usize) -> Vec<u32> {
-        let mut by_point = vec![NONE; points];
-        for i in records {
-            by_point[self.records[i].point as usize] = i as u32;
-        }
-        by_point
-    }
 }

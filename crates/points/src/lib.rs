@@ -21,4 +21,4 @@ pub use grid::{Grid, GridShape};
 pub use model::{Completed, Model};
 pub use params::{Boundary, Neighborhood, ParamError, RefineParams, Rules};
 pub use point_set::{Attribute, Interpolation, Invalid, PointSet, Values, unit_normal};
-pub use refined::{CurveCounts, LevelReport, Progress, Refined};
+pub use refined::{CurveCounts, LevelReport, Progress, Refined, add_stage_time};

@@ -79,6 +79,18 @@ impl LevelReport {
     }
 }
 
+/// Adds to the time of a stage: where boundaries are found the rings are made twice.
+pub fn add_stage_time(
+    stages: &mut Vec<(&'static str, Duration)>,
+    stage: &'static str,
+    time: Duration,
+) {
+    match stages.iter_mut().find(|(name, _)| *name == stage) {
+        Some((_, sum)) => *sum += time,
+        None => stages.push((stage, time)),
+    }
+}
+
 /// Where a refinement stands: passed to progress callbacks at the start of each stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {

@@ -123,8 +123,8 @@ impl Level {
         Seen { position: self.positions[p], normal: self.normals[p], record }
     }
 
-    /// Two unit vectors that span the tangent plane of a point.
+    /// Two unit vectors that span the tangent plane of a point: those of its record, if it lies on a crease or boundary.
     pub fn frame(&self, p: usize) -> (Vec3, Vec3) {
-        surfine_features::frame(self.normals[p], self.record(p))
+        self.record(p).map_or_else(|| math::tangent_frame(self.normals[p]), Record::frame)
     }
 }

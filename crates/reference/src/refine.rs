@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 use surfine_features::{Folded, Records, Refinement, check_marks, fold};
 use surfine_points::{
     Boundary, Grid, GridShape, Invalid, LevelReport, ParamError, PointSet, Progress, RefineParams,
-    Refined,
+    Refined, add_stage_time,
 };
 
 /// Why a refinement did not run.
@@ -135,12 +135,7 @@ impl Clock<'_> {
         (self.start)(stage);
         let begin = Instant::now();
         let result = work();
-        let time = begin.elapsed();
-        // Where boundaries are found the rings are made twice.
-        match self.times.iter_mut().find(|(name, _)| *name == stage) {
-            Some((_, sum)) => *sum += time,
-            None => self.times.push((stage, time)),
-        }
+        add_stage_time(&mut self.times, stage, begin.elapsed());
         result
     }
 }
