@@ -2,7 +2,7 @@
 // Twin: `Gap::widest` in crates/features/src/boundary.rs
 // One invocation per point. dispatch: bits of θ_b, room in the list.
 
-@group(0) @binding(2) var<storage, read> ring_starts: array<u32>;
+@group(0) @binding(2) var<storage, read> fans: array<Fan>;
 @group(0) @binding(3) var<storage, read> ring_entries: array<vec2<u32>>;
 /// The point, the ring's members where the gap begins and ends, bits of its angle.
 @group(0) @binding(4) var<storage, read_write> gaps: array<vec4<u32>>;
@@ -18,8 +18,8 @@ fn boundary_gaps(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
     if p >= params.points {
         return;
     }
-    let first = ring_starts[p];
-    let after = ring_starts[p + 1u];
+    let first = fans[p].slots.x;
+    let after = first + fans[p].slots.y;
     if after - first < 2u {
         return;
     }

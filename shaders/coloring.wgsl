@@ -1,29 +1,40 @@
 // coloring: one round of a colouring of the conflict graph (Jones and Plassmann 1993).
 // Twin: crates/reference/src/coloring.rs
-// One invocation per point. dispatch: 1 in the round whose leftovers are counted.
+// One invocation per point that waits. dispatch: number of the round.
 //
-// A point takes the lowest class that none of its neighbours with a higher priority has, once these all have one. So
+// A point takes the lowest class that none of those in conflict with it has that choose before it, once these all have one. So
 // the classes are those of a sequential loop by priority, whatever rounds it takes to reach them.
 
-@group(0) @binding(2) var<storage, read> conflict_blocks: array<vec2<u32>>;
-@group(0) @binding(3) var<storage, read> conflict_entries: array<u32>;
-@group(0) @binding(4) var<storage, read_write> mirror_heads: array<u32>;
+@group(0) @binding(2) var<storage, read> fans: array<Fan>;
+/// Lists of candidates around points and of conflicts.
+@group(0) @binding(3) var<storage, read> around: array<u32>;
+@group(0) @binding(4) var<storage, read> mirror_heads: array<u32>;
 @group(0) @binding(5) var<storage, read> mirror_links: array<vec2<u32>>;
 /// One more than the class of each point; 0 for none yet.
 @group(0) @binding(6) var<storage, read_write> classes: array<atomic<u32>>;
-@group(0) @binding(7) var<storage, read_write> counters: Counters;
+/// The points that wait in even rounds, then those that wait in odd ones. In the first round all do.
+@group(0) @binding(7) var<storage, read_write> waiting: array<u32>;
+/// Number of both.
+@group(0) @binding(8) var<storage, read_write> rounds: array<atomic<u32>, 2>;
+@group(0) @binding(9) var<storage, read_write> counters: Counters;
 
 @compute @workgroup_size(64)
 fn coloring(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let p = linear_index(id, groups);
-    if p >= params.points || atomicLoad(&classes[p]) != 0u {
+    let i = linear_index(id, groups);
+    let parity = dispatch.x & 1u;
+    if i >= atomicLoad(&rounds[parity]) {
         return;
+    }
+    var p = i;
+    if dispatch.x > 0u {
+        p = waiting[parity * params.points + i];
     }
     // Classes are looked at in windows of 32.
     for (var window = 0u; ; window += 32u) {
         let taken = taken_classes(p, window);
         if taken.waiting {
-            atomicAdd(&counters.uncolored, dispatch.x);
+            let at = atomicAdd(&rounds[1u - parity], 1u);
+            waiting[(1u - parity) * params.points + at] = p;
             break;
         }
         if taken.mask != 0xffffffffu {
@@ -37,40 +48,27 @@ fn coloring(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroup
 }
 
 struct Taken {
-    /// A bit for each class of the window that a neighbour of higher priority has.
+    /// A bit for each class of the window that is taken.
     mask: u32,
-    /// Whether a neighbour of higher priority has no class yet.
+    /// Whether somebody who chooses before has no class yet.
     waiting: bool,
 }
 
 fn taken_classes(p: u32, window: u32) -> Taken {
     var taken = Taken(0u, false);
-    let list = conflict_blocks[p];
-    for (var i = list.x; i < list.x + list.y; i++) {
-        note_class(&taken, p, conflict_entries[i], window);
+    let first = fans[p].around.x + fans[p].around.y;
+    for (var i = first; i < first + fans[p].conflicts.y; i++) {
+        note_class(&taken, around[i], window);
     }
     for (var link = mirror_heads[p]; link != 0u; link = mirror_links[link - 1u].y) {
-        note_class(&taken, p, mirror_links[link - 1u].x, window);
+        note_class(&taken, mirror_links[link - 1u].x, window);
     }
     return taken;
 }
 
-fn note_class(taken: ptr<function, Taken>, p: u32, q: u32, window: u32) {
-    if scramble(q) <= scramble(p) {
-        return;
-    }
+fn note_class(taken: ptr<function, Taken>, q: u32, window: u32) {
     let number = atomicLoad(&classes[q]);
-    if number == 0u {
-        (*taken).waiting = true;
-    } else if number > window && number <= window + 32u {
-        (*taken).mask |= 1u << (number - window - 1u);
-    }
-}
-
-/// A bijection of the 32-bit integers without visible order (lowbias32, C. Wellons): the priority of an index.
-fn scramble(id: u32) -> u32 {
-    var x = id;
-    x = (x ^ (x >> 16u)) * 0x7feb352du;
-    x = (x ^ (x >> 15u)) * 0x846ca68bu;
-    return x ^ (x >> 16u);
+    (*taken).waiting |= number == 0u;
+    let inside = number > window & number <= window + 32u;
+    (*taken).mask |= select(0u, 1u << ((number - window - 1u) & 31u), inside);
 }

@@ -1,106 +1,110 @@
-// conflicts: the points that must not be refined together with each point, as seen from its own balls: λ1 r around it
-// and λ2 ρ around its candidates. Twin: crates/reference/src/conflicts.rs
-// One invocation per point.
+// conflicts: the candidates that each point may meet, and the points that must not be refined together with it, as far as its
+// own side shows. Twin: crates/reference/src/conflicts.rs
+// One invocation per point. dispatch: first point, number of points.
 
 @group(0) @binding(2) var<storage, read> points: array<Point>;
-@group(0) @binding(3) var<storage, read> ring_starts: array<u32>;
-@group(0) @binding(4) var<storage, read> candidate_positions: array<vec4<f32>>;
-@group(0) @binding(5) var<storage, read> candidate_normals: array<vec4<f32>>;
-@group(0) @binding(6) var<storage, read> owners: array<u32>;
-@group(0) @binding(7) var<storage, read> grid: array<u32>;
-/// First entry and size of each point's list.
-@group(0) @binding(8) var<storage, read_write> conflict_blocks: array<vec2<u32>>;
-@group(0) @binding(9) var<storage, read_write> conflict_entries: array<u32>;
+@group(0) @binding(3) var<storage, read_write> fans: array<Fan>;
+@group(0) @binding(4) var<storage, read> of_slot: array<u32>;
+@group(0) @binding(5) var<storage, read> candidates: array<Candidate>;
+@group(0) @binding(6) var<storage, read> grid: array<u32>;
+@group(0) @binding(7) var<storage, read> places: array<vec4<u32>>;
+/// Lists of candidates around points and of conflicts.
+@group(0) @binding(8) var<storage, read_write> around: array<u32>;
+@group(0) @binding(9) var<storage, read_write> arena: array<u32>;
 @group(0) @binding(10) var<storage, read_write> counters: Counters;
+@group(0) @binding(11) var<storage, read> curves: array<u32>;
 
-/// What a point brings along: its centre, the square of λ1 r and its slots.
-struct Own {
-    p: u32,
-    first: u32,
-    after: u32,
-    near_squared: f32,
-    center: vec3<f32>,
+/// Radii exceed the distances they must cover by this factor, so that rounding can't lose the farthest ring.
+const COVER: f32 = 1.02;
+/// Widens what lists must hold, so that rounding can't lose an entry.
+const WIDER: f32 = 1.00001;
+/// New neighbourhoods that are longer, or have more candidates around, are left over by insertion.wgsl,
+const LONGEST_NEW: u32 = 28u;
+/// and those with more members by next_ring.wgsl.
+const LONGEST_NEXT: u32 = 48u;
+
+// Rows: a candidate, one within the distance of conflicts, a point in conflict.
+const ID: u32 = 0u;
+const CLOSE: u32 = 1u;
+const FOUND: u32 = 2u;
+const ROWS: u32 = 3u;
+const CAPACITY: u32 = 64u;
+
+/// How far what bears on a point may be.
+struct Reach {
+    /// The largest radius that it may have at the next level: that of now, or as far as its own candidates are.
+    largest: f32,
+    /// Within this distance are the candidates of all points that it is in conflict with, as far as it can see.
+    conflicts: f32,
+    /// The farthest own candidate.
+    own_reach: f32,
+    /// Number of its own candidates.
+    own: u32,
 }
 
 @compute @workgroup_size(64)
 fn conflicts(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let p = linear_index(id, groups);
-    if p >= params.points {
+    let index = linear_index(id, groups);
+    if index >= dispatch.y {
         return;
     }
-    let near = near_radius(p);
-    let own = Own(p, ring_starts[p], ring_starts[p + 1u], near * near, points[p].position);
-    let radius = reach_of_conflicts(own, near);
-    // Beyond it no ball reaches, whatever the rounding.
-    let reach_squared = radius * radius * 1.001;
-    var size = 0u;
-    var walk = ball_walk(own.center, radius);
-    for (var y = next_entry(&walk); y != NONE; y = next_entry(&walk)) {
-        size += u32(first_conflicting(own, y, reach_squared));
-    }
-    let first = atomicAdd(&counters.conflicts, size);
-    conflict_blocks[p] = vec2(first, 0u);
-    if first + size > params.conflict_entries {
+    let p = dispatch.x + index;
+    if IN_ARENA && fans[p].left_over != CONFLICTS {
         return;
     }
-    conflict_blocks[p] = vec2(first, size);
-    var next = first;
-    walk = ball_walk(own.center, radius);
-    for (var y = next_entry(&walk); y != NONE; y = next_entry(&walk)) {
-        if first_conflicting(own, y, reach_squared) {
-            conflict_entries[next] = owners[y];
-            next += 1u;
-        }
+    if !open_rows(p) {
+        return;
+    }
+    let reach = reach_of(p);
+    let size = gather(p, max(reach.largest, reach.conflicts));
+    if !fits(size + 1u) || !store(p, reach, size) {
+        fans[p].left_over = CONFLICTS;
+        atomicOr(&counters.left_over, CONFLICTS);
     }
     note_cut_loops(p);
 }
 
-/// Radius around the centre that holds all balls: λ1 r around it, λ2 ρ around its candidates.
-fn reach_of_conflicts(own: Own, near: f32) -> f32 {
-    var reach = near;
-    for (var x = own.first; x < own.after; x++) {
-        let candidate = candidate_positions[x];
-        if candidate.w > 0.0 {
-            let d = candidate.xyz - own.center;
-            reach = max(reach, sqrt(dot3(d, d)) + params.lambda2 * candidate.w);
+fn reach_of(p: u32) -> Reach {
+    let slots = fans[p].slots;
+    var reach = Reach(0.0, fans[p].near, 0.0, 0u);
+    for (var slot = slots.x; slot < slots.x + slots.y; slot++) {
+        let c = of_slot[slot];
+        if c == NONE {
+            continue;
+        }
+        let place = candidates[c].place;
+        if place.w > 0.0 {
+            let d = place.xyz - points[p].position;
+            let distance = sqrt(dot3(d, d));
+            reach.own_reach = max(reach.own_reach, distance);
+            reach.conflicts = max(reach.conflicts, distance + params.lambda2 * place.w);
+            reach.own += 1u;
         }
     }
+    reach.largest = COVER * WIDER * max(points[p].radius, reach.own_reach);
+    reach.conflicts = WIDER * reach.conflicts;
     return reach;
 }
 
-/// Whether candidate y lies in one of the balls.
-fn conflicting(own: Own, y: u32, reach_squared: f32) -> bool {
-    let position = candidate_positions[y].xyz;
-    let from_center = position - own.center;
-    let squared = dot3(from_center, from_center);
-    if squared < own.near_squared {
-        return true;
-    }
-    if squared > reach_squared {
-        return false;
-    }
-    for (var x = own.first; x < own.after; x++) {
-        let candidate = candidate_positions[x];
-        let d = position - candidate.xyz;
-        let sphere = params.lambda2 * candidate.w;
-        if candidate.w > 0.0 && dot3(d, d) < sphere * sphere {
-            return true;
+/// Lists the candidates within a distance, and returns how many they are, of which no more are listed than fit.
+fn gather(p: u32, distance: f32) -> u32 {
+    let center = points[p].position;
+    var size = 0u;
+    let span = ball_span(center, distance);
+    for (var run = 0u; run < span.runs; run++) {
+        let entries = entries_of_run(span, run);
+        for (var i = entries.x; i < entries.y; i++) {
+            let entry = places[i];
+            let d = bitcast<vec3<f32>>(entry.xyz) - center;
+            let d2 = dot3(d, d);
+            // Written in any case: branches that neighbouring points take differently cost more.
+            set_word(ID, size, entry.w);
+            size += u32(d2 <= distance * distance);
         }
     }
-    return false;
+    return size;
 }
 
-/// Whether candidate y conflicts and is the first one of its owner that does: so each point is listed once.
-fn first_conflicting(own: Own, y: u32, reach_squared: f32) -> bool {
-    let q = owners[y];
-    // New points on creases and boundaries are there before all others: nobody has them.
-    if q == NONE || q == own.p || !conflicting(own, y, reach_squared) {
-        return false;
-    }
-    for (var earlier = ring_starts[q]; earlier < y; earlier++) {
-        if candidate_positions[earlier].w > 0.0 && conflicting(own, earlier, reach_squared) {
-            return false;
-        }
-    }
-    return true;
+fn curve_word(at: u32) -> u32 {
+    return curves[at];
 }

@@ -1,8 +1,10 @@
-// conflicts: makes the graph symmetric. A conflict that only one side found is linked to the other side's point.
+// conflicts: makes the graph symmetric. A conflict that only one side found is linked to the point of the other side, if that
+// chooses its class later.
 // One invocation per point. The order of the links is that of timing; the colouring does not depend on it.
 
-@group(0) @binding(2) var<storage, read> conflict_blocks: array<vec2<u32>>;
-@group(0) @binding(3) var<storage, read> conflict_entries: array<u32>;
+@group(0) @binding(2) var<storage, read> fans: array<Fan>;
+/// Lists of candidates around points and of conflicts.
+@group(0) @binding(3) var<storage, read> around: array<u32>;
 /// One more than the first link of each point; 0 for none.
 @group(0) @binding(4) var<storage, read_write> mirror_heads: array<atomic<u32>>;
 /// The point that found the conflict, and one more than the next link.
@@ -15,25 +17,26 @@ fn conflicts_mirror(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_w
     if p >= params.points {
         return;
     }
-    let own = conflict_blocks[p];
-    for (var i = own.x; i < own.x + own.y; i++) {
-        let q = conflict_entries[i];
-        if found(q, p) {
+    let conflicts = fans[p].conflicts;
+    let first = fans[p].around.x + fans[p].around.y;
+    for (var i = first + conflicts.y; i < first + conflicts.x; i++) {
+        let q = around[i];
+        if found_before(q, p) {
             continue;
         }
         let link = atomicAdd(&counters.mirrored, 1u);
-        if link < arrayLength(&mirror_links) {
+        if link < params.mirror_links {
             mirror_links[link] = vec2(p, atomicExchange(&mirror_heads[q], link + 1u));
         }
     }
     note_cut_loops(p);
 }
 
-/// Whether q's own list holds p.
-fn found(q: u32, p: u32) -> bool {
-    let list = conflict_blocks[q];
-    for (var i = list.x; i < list.x + list.y; i++) {
-        if conflict_entries[i] == p {
+/// Whether q's own list holds p among those that choose before it.
+fn found_before(q: u32, p: u32) -> bool {
+    let first = fans[q].around.x + fans[q].around.y;
+    for (var i = first; i < first + fans[q].conflicts.y; i++) {
+        if around[i] == p {
             return true;
         }
     }

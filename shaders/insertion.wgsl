@@ -1,24 +1,57 @@
 // insertion: completes the new neighbourhood N' of each point of one class (section 5).
 // Twin: crates/reference/src/insertion.rs
-// The operations on N' are in shared/new_ring.wgsl, the choice of a candidate in shared/choice.wgsl, eq. 11 is in
-// shared/discard.wgsl, the radii in shared/next_radii.wgsl.
-// One invocation per point of the class. dispatch: one more than the class, its first member, its size, number of classes.
+// N' is in shared/new_ring.wgsl, the choice of a candidate in shared/choice.wgsl, eq. 11 in shared/discard.wgsl, the radii in
+// shared/next_radii.wgsl.
+// One invocation per point of the class. dispatch: the class from 1, its first member, its size, number of classes.
 //
 // Only candidates that earlier classes inserted are seen, so it does not matter when the members of one class run.
 
 @group(0) @binding(2) var<storage, read> points: array<Point>;
-@group(0) @binding(3) var<storage, read> ring_starts: array<u32>;
-@group(0) @binding(4) var<storage, read> candidate_positions: array<vec4<f32>>;
-@group(0) @binding(5) var<storage, read> candidate_normals: array<vec4<f32>>;
-/// The candidates by cell, then the table of curves: drivers may allow no more than ten buffers.
-@group(0) @binding(6) var<storage, read> grid: array<u32>;
+@group(0) @binding(3) var<storage, read> fans: array<Fan>;
+@group(0) @binding(4) var<storage, read> of_slot: array<u32>;
+/// As Candidate, with the state atomic.
+@group(0) @binding(5) var<storage, read_write> candidates: array<SharedCandidate>;
+/// Lists of candidates around points and of conflicts.
+@group(0) @binding(6) var<storage, read> around: array<u32>;
 /// The first member of each class and one more, then the members by class.
 @group(0) @binding(7) var<storage, read> class_members: array<u32>;
-@group(0) @binding(8) var<storage, read_write> states: array<atomic<u32>>;
-/// Bits of the radii at the next level: of the points, then of the slots.
-@group(0) @binding(9) var<storage, read_write> next_radii: array<atomic<u32>>;
-@group(0) @binding(10) var<storage, read_write> arena: array<u32>;
-@group(0) @binding(11) var<storage, read_write> counters: Counters;
+/// Bits of the radii at the next level: of the points, then of the candidates.
+@group(0) @binding(8) var<storage, read_write> next_radii: array<atomic<u32>>;
+@group(0) @binding(9) var<storage, read_write> arena: array<u32>;
+@group(0) @binding(10) var<storage, read_write> counters: Counters;
+@group(0) @binding(11) var<storage, read> curves: array<u32>;
+
+struct SharedCandidate {
+    place: vec4<f32>,
+    normal: vec3<f32>,
+    state: atomic<u32>,
+    corners: vec3<u32>,
+}
+
+// Rows of N': candidates, and after the last one the points of the level that only bound gaps; angle on the tangent plane; place
+// relative to the centre; normal; radius of the discard sphere. Then its members in order, and the gaps between them.
+const ID: u32 = 0u;
+const ANGLE: u32 = 1u;
+const OFFSET: u32 = 2u;
+const NORMAL: u32 = 5u;
+const SPHERE: u32 = 8u;
+const ORDER: u32 = 9u;
+const GAP: u32 = 10u;
+// Rows of Y: candidates, places, radii of the discard spheres.
+const OUTER: u32 = 11u;
+const OUTER_OFFSET: u32 = 12u;
+const OUTER_SPHERE: u32 = 15u;
+// Rows of the fan's candidates: NONE once it was tried; angle; place; one over the distance; the one of Y that discards it, or
+// NONE, and the squared distance to that.
+const OWN: u32 = 16u;
+const OWN_ANGLE: u32 = 17u;
+const OWN_OFFSET: u32 = 18u;
+const OWN_INVERSE: u32 = 21u;
+const OWN_OUTER: u32 = 22u;
+const OWN_SQUARED: u32 = 23u;
+const ROWS: u32 = 24u;
+/// As conflicts.wgsl counts on.
+const CAPACITY: u32 = 28u;
 
 @compute @workgroup_size(64)
 fn insertion(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -27,127 +60,110 @@ fn insertion(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
         return;
     }
     let p = class_members[dispatch.w + 1u + dispatch.y + index];
-    open_ring(p);
-    if !allocate(p) {
+    if IN_ARENA != ((fans[p].left_over & INSERTION) != 0u) || !open_rows(p) {
         return;
     }
+    open_ring(p);
     gather(p);
-    complete(p);
-    store_radii(p);
+    gather_own(fans[p].slots);
+    complete();
+    store_radii();
     note_cut_loops(p);
 }
 
-/// Takes room in the arena for N', the angles of the candidates and Y, as if all new points around were seen; false if
-/// there is too little.
-fn allocate(p: u32) -> bool {
-    var near_count = 0u;
-    var outer_count = 0u;
-    let near = ring.near;
-    var walk = ball_walk(ring.center, ring.radius);
-    for (var slot = next_entry(&walk); slot != NONE; slot = next_entry(&walk)) {
-        if !is_inserted(slot) {
-            continue;
-        }
-        let d = offset_of(slot);
-        let d2 = dot3(d, d);
-        if d2 < ring.radius * ring.radius {
-            let is_near = d2 < near * near && is_apart(d2, ring.radius);
-            near_count += u32(is_near);
-            outer_count += u32(!is_near);
-        }
-    }
-    near_count += 2u * u32(ring.record != NONE);
-    // Each candidate can enter N' or bring in one point of Y.
-    let own = ring_starts[p + 1u] - ring_starts[p];
-    let words = MEMBER_WORDS * (near_count + own) + own + outer_count;
-    ring.members = atomicAdd(&counters.arena, words);
-    ring.angles = ring.members + MEMBER_WORDS * (near_count + own);
-    ring.outer = ring.angles + own;
-    atomicMax(&counters.arena_peak, ring.members + words);
-    return ring.members + words <= params.arena_words;
+/// How many words the rows must hold.
+fn count_members(p: u32) -> u32 {
+    // Each candidate can enter N' or bring in one point of Y, and curves bound gaps.
+    return fans[p].around.y + fans[p].slots.y + 3u;
 }
 
 /// Starts N' with the new points nearer than λ1 r, and Y with the others nearer than r (eq. 10).
 fn gather(p: u32) {
-    let near = ring.near;
-    var walk = ball_walk(ring.center, ring.radius);
-    for (var slot = next_entry(&walk); slot != NONE; slot = next_entry(&walk)) {
-        if !is_inserted(slot) {
-            continue;
-        }
-        let d = offset_of(slot);
+    let near = fans[p].near;
+    let list = fans[p].around;
+    // First the inserted ones are listed where Y will be: loops over few are cheaper than branches.
+    var size = 0u;
+    for (var i = list.x; i < list.x + list.y; i++) {
+        let c = around[i];
+        set_word(OUTER, size, c);
+        // Inserted by an earlier class.
+        size += u32(atomicLoad(&candidates[c].state) < dispatch.x);
+    }
+    for (var i = 0u; i < size; i++) {
+        let c = word(OUTER, i);
+        let there = candidates[c].place;
+        let d = there.xyz - ring.center;
         let d2 = dot3(d, d);
-        if d2 >= ring.radius * ring.radius || !visible(slot) {
-            continue;
-        }
+        let sphere = params.lambda2 * there.w;
         // A new point in the centre's own place has no direction: it can only discard.
-        if d2 < near * near && is_apart(d2, ring.radius) {
-            set_member(ring.size, slot, angle_of(slot));
-            ring.size += 1u;
-        } else {
-            arena[ring.outer + ring.outer_size] = slot;
-            ring.outer_size += 1u;
+        let joins = d2 < near * near & is_apart(d2, ring.radius);
+        if joins {
+            place(c, d, candidates[c].normal, sphere);
         }
+        set_word(OUTER, ring.outer_size, c);
+        set_vector(OUTER_OFFSET, ring.outer_size, d);
+        set_number(OUTER_SPHERE, ring.outer_size, sphere);
+        ring.outer_size += u32(!joins & d2 < ring.radius * ring.radius);
     }
     add_bounds();
-    sort_members();
     for (var i = 0u; i < ring.size; i++) {
-        set_gap(i, measured_gap(i));
+        set_number(GAP, i, measured_gap(i));
     }
-    for (var slot = ring_starts[p]; slot < ring_starts[p + 1u]; slot++) {
-        arena[ring.angles + slot - ring_starts[p]] = bitcast<u32>(angle_of(slot));
+}
+
+/// Lists the candidates of the fan.
+fn gather_own(slots: vec2<u32>) {
+    for (var slot = slots.x; slot < slots.x + slots.y; slot++) {
+        // Slots without a triangle have one that does not exist.
+        let c = of_slot[slot];
+        let there = candidates[min(c, params.candidates - 1u)].place;
+        let d = there.xyz - ring.center;
+        set_word(OWN, ring.own, c);
+        set_number(OWN_ANGLE, ring.own, angle_of(d));
+        set_vector(OWN_OFFSET, ring.own, d);
+        set_number(OWN_INVERSE, ring.own, 1.0 / sqrt(dot3(d, d)));
+        ring.own += u32(c != NONE & there.w > 0.0);
+    }
+    for (var k = 0u; k < ring.own; k++) {
+        let closest = discarded_by_outer(k);
+        set_word(OWN_OUTER, k, closest.c);
+        set_number(OWN_SQUARED, k, closest.squared);
     }
 }
 
 /// Splits the widest gap until none is as wide as θ_c or no candidate is left. Each candidate is tried once.
-fn complete(p: u32) {
+fn complete() {
     loop {
         var chosen = NONE;
         if ring.size == 0u {
-            chosen = closest_candidate(p);
+            chosen = closest_candidate();
             if chosen == NONE {
                 return;
             }
         } else {
             let widest = widest_gap();
-            if gap_of(widest) < params.theta_c {
+            if number(GAP, widest) < params.theta_c {
                 return;
             }
-            chosen = best_split(p, widest);
+            chosen = best_split(widest);
             if chosen == NONE {
-                set_gap(widest, 0.0);
+                set_number(GAP, widest, 0.0);
                 continue;
             }
         }
+        let c = word(OWN, chosen);
         let h = discarded_by(chosen);
+        set_word(OWN, chosen, NONE);
         if h == NONE {
-            atomicStore(&states[chosen], dispatch.x + 1u);
-            add(chosen);
-        } else {
-            atomicStore(&states[chosen], USED);
-            if can_join(h) {
-                add(h);
-            }
+            atomicStore(&candidates[c].state, dispatch.x);
+        }
+        let joins = select(h, c, h == NONE);
+        if h == NONE || can_join(h) {
+            add(joins);
         }
     }
 }
 
-/// Whether an earlier class inserted the candidate.
-fn is_inserted(slot: u32) -> bool {
-    return atomicLoad(&states[slot]) - 1u < dispatch.x;
-}
-
-/// Whether the centre sees a new point.
-fn visible(slot: u32) -> bool {
-    let normal = candidate_normals[slot].xyz;
-    if !same_side(normal, ring.normal) {
-        return false;
-    }
-    let center = Seen(ring.center, ring.normal, ring.record);
-    let other = Seen(candidate_positions[slot].xyz, normal, record_of_slot(slot));
-    return sees(center, ring.near_curves, ring.radius, other);
-}
-
 fn curve_word(at: u32) -> u32 {
-    return grid[cell_count() + 1u + params.slots + at];
+    return curves[at];
 }

@@ -2,38 +2,42 @@
 // One invocation per point. dispatch: first point, number of points.
 //
 // The members of the old ring and the inserted candidates within the new radius go through the filter of section 4;
-// what is left must be within the radii, of the point and of the members alike. The filter and the radii are in
-// shared/ahead.wgsl.
+// what is left must be within the radii, of the point and of the members alike. The radii are in shared/ahead.wgsl.
 
 @group(0) @binding(2) var<storage, read> points: array<Point>;
-@group(0) @binding(3) var<storage, read> ring_starts: array<u32>;
+@group(0) @binding(3) var<storage, read> fans: array<Fan>;
 @group(0) @binding(4) var<storage, read> ring_entries: array<vec2<u32>>;
-@group(0) @binding(5) var<storage, read> candidate_positions: array<vec4<f32>>;
-@group(0) @binding(6) var<storage, read> candidate_normals: array<vec4<f32>>;
-/// The candidates by cell, then the table of curves: drivers may allow no more than ten buffers.
-@group(0) @binding(7) var<storage, read> grid: array<u32>;
-@group(0) @binding(8) var<storage, read> states: array<u32>;
-/// Bits of the radii at the next level: of the points, then of the slots, by the insertion; then the same by this kernel.
-@group(0) @binding(9) var<storage, read_write> next_radii: array<atomic<u32>>;
-/// Members: old points by index, then slots; bits of x and y on the tangent plane; bits of the angle, or NONE.
-@group(0) @binding(10) var<storage, read_write> arena: array<vec4<u32>>;
-@group(0) @binding(11) var<storage, read_write> counters: Counters;
+@group(0) @binding(5) var<storage, read> candidates: array<Candidate>;
+/// Lists of candidates around points and of conflicts.
+@group(0) @binding(6) var<storage, read> around: array<u32>;
+/// Bits of the radii at the next level: of the points, then of the candidates, by the insertion; then the same by this kernel.
+@group(0) @binding(7) var<storage, read_write> next_radii: array<atomic<u32>>;
+@group(0) @binding(8) var<storage, read_write> arena: array<u32>;
+@group(0) @binding(9) var<storage, read_write> counters: Counters;
+@group(0) @binding(10) var<storage, read> curves: array<u32>;
 
 /// The accurate neighbourhood N^g, or else the fuzzy one N^f.
 override accurate: bool = true;
 
-/// Radii exceed the distances they must cover by this factor, so that rounding can't lose the farthest ring.
-const COVER: f32 = 1.02;
+// Rows: old points by index, then candidates; a member's angle; its place on the tangent plane; the vector whose fuzzy plane is
+// tested; its place relative to the centre; the members of the ring in order.
+const ID: u32 = 0u;
+const ANGLE: u32 = 1u;
+const X: u32 = 2u;
+const Y: u32 = 3u;
+const OFFSET: u32 = 4u;
+const PLACE: u32 = 7u;
+const ORDER: u32 = 10u;
+const ROWS: u32 = 11u;
+/// As conflicts.wgsl counts on.
+const CAPACITY: u32 = 48u;
 
-/// A point and its members in the arena.
 struct Around {
-    p: u32,
-    first: u32,
-    size: u32,
     center: vec3<f32>,
+    radius: f32,
     normal: vec3<f32>,
     frame: TangentFrame,
-    near_curves: bool,
+    size: u32,
 }
 
 @compute @workgroup_size(64)
@@ -43,89 +47,80 @@ fn next_ring(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
         return;
     }
     let p = dispatch.x + index;
-    let radius = bitcast<f32>(atomicLoad(&next_radii[p]));
-    let center = points[p];
-    let near_curves = is_near_curves(center.position, radius);
-    var around = Around(p, 0u, 0u, center.position, center.normal, frame_of(p), near_curves);
-    let own = ring_starts[p + 1u] - ring_starts[p];
-    let most = own + count_new(around, radius);
-    around.first = atomicAdd(&counters.arena, 4u * most) / 4u;
-    atomicMax(&counters.arena_peak, 4u * (around.first + most));
-    if 4u * (around.first + most) > params.arena_words {
+    if IN_ARENA != ((fans[p].left_over & NEXT_RING) != 0u) || !open_rows(p) {
         return;
     }
-    for (var slot = ring_starts[p]; slot < ring_starts[p + 1u]; slot++) {
-        add(&around, ring_entries[slot].x);
-    }
-    var walk = ball_walk(around.center, radius);
-    for (var slot = next_entry(&walk); slot != NONE; slot = next_entry(&walk)) {
-        if is_near(around, slot, radius) {
-            add(&around, params.points + slot);
+    let members = gather(p);
+    var ring = 0u;
+    for (var i = 0u; i < members; i++) {
+        if !is_behind(i, members) {
+            set_number(ANGLE, i, direction_angle(number(Y, i), number(X, i)));
+            sort_in(i, ring);
+            ring += 1u;
         }
     }
-    filter_members(around);
-    around.size = sort_ring(around.first, around.size);
-    cover_ring(around);
+    cover_ring(p, ring);
     note_cut_loops(p);
 }
 
-/// Whether an inserted candidate is within the radius, where the centre sees it.
-fn is_near(around: Around, slot: u32, radius: f32) -> bool {
-    let d = candidate_positions[slot].xyz - around.center;
-    let inserted = states[slot] - 1u < USED - 1u;
-    let normal = candidate_normals[slot].xyz;
-    if !inserted || dot3(d, d) > radius * radius || !same_side(normal, around.normal) {
-        return false;
-    }
-    let center = Seen(around.center, around.normal, record_of(around.p));
-    let other = Seen(candidate_positions[slot].xyz, normal, record_of_slot(slot));
-    return sees(center, around.near_curves, radius, other);
+/// Whether a member hides nobody.
+fn is_left_out(j: u32) -> bool {
+    return false;
 }
 
-fn count_new(around: Around, radius: f32) -> u32 {
-    var count = 0u;
-    var walk = ball_walk(around.center, radius);
-    for (var slot = next_entry(&walk); slot != NONE; slot = next_entry(&walk)) {
-        count += u32(is_near(around, slot, radius));
-    }
-    return count;
+/// How many words the rows must hold.
+fn count_members(p: u32) -> u32 {
+    return fans[p].slots.y + fans[p].around.y + 1u;
 }
 
-/// An old point or a slot relative to the centre.
-fn offset_of(around: Around, id: u32) -> vec3<f32> {
-    if id < params.points {
-        return points[id].position - around.center;
+/// Lists the members of the old ring and the new points within the new radius.
+fn gather(p: u32) -> u32 {
+    let center = points[p];
+    var all = Around(center.position, center.radius, center.normal, frame_of(p), 0u);
+    let slots = fans[p].slots;
+    for (var slot = slots.x; slot < slots.x + slots.y; slot++) {
+        let q = ring_entries[slot].x;
+        add(&all, q, points[q].position - all.center, points[q].normal);
     }
-    return candidate_positions[id - params.points].xyz - around.center;
-}
-
-fn normal_of(id: u32) -> vec3<f32> {
-    if id < params.points {
-        return points[id].normal;
+    let radius = bitcast<f32>(atomicLoad(&next_radii[p]));
+    let list = fans[p].around;
+    // First the new points are listed, then projected: loops over few are cheaper than branches.
+    var size = 0u;
+    for (var i = list.x; i < list.x + list.y; i++) {
+        let c = around[i];
+        let d = candidates[c].place.xyz - all.center;
+        set_word(ORDER, size, c);
+        size += u32(candidates[c].state != FREE & dot3(d, d) <= radius * radius);
     }
-    return candidate_normals[id - params.points].xyz;
+    for (var i = 0u; i < size; i++) {
+        let c = word(ORDER, i);
+        add(&all, params.points + c, candidates[c].place.xyz - all.center, candidates[c].normal);
+    }
+    return all.size;
 }
 
 /// Adds a member, unless it has no direction on the tangent plane.
-fn add(around: ptr<function, Around>, id: u32) {
-    let radius = points[(*around).p].radius;
-    let d = offset_of(*around, id);
+fn add(all: ptr<function, Around>, id: u32, d: vec3<f32>, normal: vec3<f32>) {
     let d2 = dot3(d, d);
-    let x = dot3(d, (*around).frame.e1);
-    let y = dot3(d, (*around).frame.e2);
+    let x = dot3(d, (*all).frame.e1);
+    let y = dot3(d, (*all).frame.e2);
     let q2 = x * x + y * y;
-    if !is_apart(d2, radius) || q2 <= 1e-12 * d2 {
-        return;
-    }
-    let inverse = 1.0 / radius;
+    let inverse = 1.0 / (*all).radius;
     var scale = inverse;
     if accurate {
-        scale = (geodesic_distance(d, (*around).normal, normal_of(id)) * inverse) / sqrt(q2);
+        scale = (geodesic_distance(d, (*all).normal, normal) * inverse) / sqrt(q2);
     }
-    arena[(*around).first + (*around).size] = vec4(id, bitcast<u32>(x * scale), bitcast<u32>(y * scale), 0u);
-    (*around).size += 1u;
+    let i = (*all).size;
+    set_word(ID, i, id);
+    set_number(X, i, x * scale);
+    set_number(Y, i, y * scale);
+    set_vector(PLACE, i, d);
+    if !accurate {
+        set_vector(OFFSET, i, d * inverse);
+    }
+    (*all).size += u32(is_apart(d2, (*all).radius) & q2 > 1e-12 * d2);
 }
 
 fn curve_word(at: u32) -> u32 {
-    return grid[cell_count() + 1u + params.slots + at];
+    return curves[at];
 }

@@ -1,49 +1,43 @@
 // The candidate that is tried next (section 5). Twins: `closest` and `best_split` in crates/reference/src/insertion.rs
 //
-// Expects `states`, `ring_starts` and what new_ring.wgsl has.
+// Expects what insertion.wgsl and new_ring.wgsl have. Candidates are those of the row OWN.
 
 /// For an empty N': the candidate closest to the centre, the first of equals.
-fn closest_candidate(p: u32) -> u32 {
+fn closest_candidate() -> u32 {
     var best = NONE;
     var least = 0.0;
-    for (var slot = ring_starts[p]; slot < ring_starts[p + 1u]; slot++) {
-        if atomicLoad(&states[slot]) != FREE {
-            continue;
-        }
-        let d = offset_of(slot);
+    for (var k = 0u; k < ring.own; k++) {
+        let d = vector(OWN_OFFSET, k);
         let d2 = dot3(d, d);
-        let closer = best == NONE || d2 * HYSTERESIS < least;
-        if is_apart(d2, ring.radius) && closer {
-            best = slot;
-            least = d2;
-        }
+        let closer = best == NONE | d2 * HYSTERESIS < least;
+        let chosen = word(OWN, k) != NONE & is_apart(d2, ring.radius) & closer;
+        best = select(best, k, chosen);
+        least = select(least, d2, chosen);
     }
     return best;
 }
 
-/// The candidate strictly inside gap i whose smaller angle to the two ends is the largest.
-fn best_split(p: u32, i: u32) -> u32 {
-    let from_angle = angle_at(i);
-    let to_angle = angle_at(next_member(i));
+/// The candidate strictly inside gap i whose smaller angle to the two ends is the largest: angles are compared by their cosines.
+fn best_split(i: u32) -> u32 {
+    let begin = word(ORDER, i);
+    let end = word(ORDER, next_member(i));
+    let begin_angle = number(ANGLE, begin);
+    let end_angle = number(ANGLE, end);
     let wraps = i + 1u == ring.size;
-    let a = offset_of(slot_at(i)) * ring.inverse_radius;
-    let b = offset_of(slot_at(next_member(i))) * ring.inverse_radius;
+    let a = unit(vector(OFFSET, begin));
+    let b = unit(vector(OFFSET, end));
     var best = NONE;
-    var widest = SMALLEST_SPLIT;
-    for (var slot = ring_starts[p]; slot < ring_starts[p + 1u]; slot++) {
-        let angle = bitcast<f32>(arena[ring.angles + slot - ring_starts[p]]);
-        let after = angle > from_angle;
-        let before = angle < to_angle;
-        let inside = select(after && before, after || before, wraps);
-        if !inside || atomicLoad(&states[slot]) != FREE {
-            continue;
-        }
-        let x = offset_of(slot) * ring.inverse_radius;
-        let split = min(angle_between(a, x), angle_between(x, b));
-        if split > widest * HYSTERESIS {
-            best = slot;
-            widest = split;
-        }
+    var largest = SMALLEST_SPLIT;
+    for (var k = 0u; k < ring.own; k++) {
+        let angle = number(OWN_ANGLE, k);
+        let after = angle > begin_angle;
+        let before = angle < end_angle;
+        let inside = (after & before) | (wraps & (after | before));
+        let x = vector(OWN_OFFSET, k);
+        let cosine = max(dot3(a, x), dot3(b, x)) * number(OWN_INVERSE, k);
+        let chosen = word(OWN, k) != NONE & inside & cosine < largest;
+        best = select(best, k, chosen);
+        largest = select(largest, cosine - LESS, chosen);
     }
     return best;
 }

@@ -90,9 +90,9 @@ fn record_of(p: u32) -> u32 {
     return (points[p].level >> LEVEL_BITS) - 1u;
 }
 
-/// The record of a slot, or NONE.
-fn record_of_slot(slot: u32) -> u32 {
-    return select(NONE, params.records + (slot - params.fan_slots), slot >= params.fan_slots);
+/// The record of a candidate, or NONE.
+fn record_of_candidate(c: u32) -> u32 {
+    return select(NONE, params.records + (c - params.triangles), c >= params.triangles);
 }
 
 /// Whether a point lies on a crease or boundary, where its sheet ends.

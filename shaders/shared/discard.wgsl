@@ -1,33 +1,43 @@
 // The discard space (section 5, eq. 11). Twin: `discarded_by` in crates/reference/src/insertion.rs
 //
-// Expects `candidate_positions`, `candidate_normals` and what new_ring.wgsl has.
+// Expects what insertion.wgsl and new_ring.wgsl have.
 
+/// The new point whose discard sphere holds a candidate, the closest of them, or NONE.
 struct Closest {
-    slot: u32,
+    c: u32,
     squared: f32,
 }
 
-/// The new point of Y or N' whose discard sphere (eq. 11) holds the candidate: the closest of them, or NONE.
-fn discarded_by(slot: u32) -> u32 {
+/// The one of Y, which stays as it is, for a candidate of the row OWN.
+fn discarded_by_outer(k: u32) -> Closest {
+    let x = vector(OWN_OFFSET, k);
+    let c = word(OWN, k);
     var closest = Closest(NONE, 0.0);
     for (var i = 0u; i < ring.outer_size; i++) {
-        try_discard(&closest, slot, arena[ring.outer + i]);
+        closest = closer(closest, word(OUTER, i), x - vector(OUTER_OFFSET, i), number(OUTER_SPHERE, i), c);
     }
-    for (var i = 0u; i < ring.size; i++) {
-        if !is_bound(slot_at(i)) {
-            try_discard(&closest, slot, slot_at(i));
-        }
-    }
-    return closest.slot;
+    return closest;
 }
 
-fn try_discard(closest: ptr<function, Closest>, slot: u32, h: u32) {
-    let d = candidate_positions[slot].xyz - candidate_positions[h].xyz;
-    let d2 = dot3(d, d);
-    let sphere = params.lambda2 * candidate_positions[h].w;
-    let nearer = (*closest).slot == NONE || d2 < (*closest).squared || (d2 == (*closest).squared && h < (*closest).slot);
-    let sees = same_side(candidate_normals[slot].xyz, candidate_normals[h].xyz);
-    if d2 < sphere * sphere && nearer && sees {
-        *closest = Closest(h, d2);
+/// The one of Y or N'.
+fn discarded_by(k: u32) -> u32 {
+    let x = vector(OWN_OFFSET, k);
+    let c = word(OWN, k);
+    var closest = Closest(word(OWN_OUTER, k), number(OWN_SQUARED, k));
+    for (var i = 0u; i < ring.size; i++) {
+        // Members that only bound gaps have no sphere.
+        closest = closer(closest, word(ID, i), x - vector(OFFSET, i), number(SPHERE, i), c);
     }
+    return closest.c;
+}
+
+/// The closer one of what is known and h, at a distance d from candidate c.
+fn closer(closest: Closest, h: u32, d: vec3<f32>, sphere: f32, c: u32) -> Closest {
+    let d2 = dot3(d, d);
+    let nearer = closest.c == NONE | d2 < closest.squared | (d2 == closest.squared & h < closest.c);
+    var discards = d2 < sphere * sphere & nearer;
+    if discards {
+        discards = same_side(candidates[c].normal, candidates[h].normal);
+    }
+    return Closest(select(closest.c, h, discards), select(closest.squared, d2, discards));
 }

@@ -1,30 +1,44 @@
 // Fuzzy planes (section 4.1, eq. 8). Twin: `is_behind` in crates/reference/src/neighborhood.rs
+//
+// Expects `accurate`, `is_left_out` and rows X, Y and OFFSET of the members, as neighborhood.wgsl has them.
 
 /// Largest badness of a neighbour: 1, and a margin because regular grids give exactly that.
 const WORST_BADNESS: f32 = 1.001;
 
-/// The largest signed squares of sin α_ij so far, over successors and over predecessors: they order as the sines do and
-/// need no root per pair. An empty set has -2.
-struct Badness {
-    successor: f32,
-    predecessor: f32,
+/// Whether the badness w_i (eq. 8) of member i is above 1: it lies behind its successors and predecessors.
+///
+/// The maximum is taken over signed squares of sin α_ij, which order the same and need no root per pair. An empty set has -2.
+fn is_behind(i: u32, members: u32) -> bool {
+    let x = number(X, i);
+    let y = number(Y, i);
+    let own = plane_vector(i);
+    var successor = -2.0;
+    var predecessor = -2.0;
+    for (var j = 0u; j < members; j++) {
+        let other = plane_vector(j);
+        let c = own - other;
+        let product = dot3(other, other) * dot3(c, c);
+        let along = dot3(other, c);
+        let sin_squared = along * abs(along) / product;
+        let takes_part = i != j & !is_left_out(j) & product != 0.0;
+        // An exactly collinear point counts as successor.
+        let succeeds = x * number(Y, j) - y * number(X, j) >= 0.0;
+        successor = select(successor, sin_squared, takes_part & succeeds & sin_squared > successor);
+        predecessor = select(predecessor, sin_squared, takes_part & !succeeds & sin_squared > predecessor);
+        // Both only rise. Among few it costs more to look than to go on.
+        if IN_ARENA && plane_badness(successor) + plane_badness(predecessor) > WORST_BADNESS {
+            return true;
+        }
+    }
+    return plane_badness(successor) + plane_badness(predecessor) > WORST_BADNESS;
 }
 
-/// Takes the fuzzy plane of another member into account; true once the badness is above 1, whatever comes after.
-fn is_bad(badness: ptr<function, Badness>, own: vec3<f32>, other: vec3<f32>, succeeds: bool) -> bool {
-    let c = own - other;
-    let product = dot3(other, other) * dot3(c, c);
-    if product == 0.0 {
-        return false;
+/// The vector whose fuzzy plane is tested: q' - p for the accurate neighbourhood, p_i - p for the fuzzy one.
+fn plane_vector(i: u32) -> vec3<f32> {
+    if accurate {
+        return vec3(number(X, i), number(Y, i), 0.0);
     }
-    let along = dot3(other, c);
-    let sin_squared = along * abs(along) / product;
-    if sin_squared <= select((*badness).predecessor, (*badness).successor, succeeds) {
-        return false;
-    }
-    (*badness).successor = select((*badness).successor, sin_squared, succeeds);
-    (*badness).predecessor = select(sin_squared, (*badness).predecessor, succeeds);
-    return plane_badness((*badness).successor) + plane_badness((*badness).predecessor) > WORST_BADNESS;
+    return vector(OFFSET, i);
 }
 
 /// w_ij from the signed square of sin α_ij; 0 for an empty set.

@@ -1,34 +1,44 @@
-// Radii at the next level (section 5, end). Twins: `new_radius` and `covers` in crates/reference/src/insertion.rs
+// Radii at the next level (section 5, end). Twin: `store_radii` in crates/reference/src/insertion.rs
 //
 // Expects `next_radii` and what new_ring.wgsl has.
 
 /// Radii exceed the distances they must cover by this factor, so that rounding can't lose the farthest ring.
 const COVER: f32 = 1.02;
 
-/// Makes the next radius of a slot at least this.
-fn cover(slot: u32, distance: vec3<f32>) {
-    atomicMax(&next_radii[params.points + slot], bitcast<u32>(COVER * sqrt(dot3(distance, distance))));
+/// Bits of the radius that covers a distance: they are ordered as radii are.
+fn cover(distance: vec3<f32>) -> u32 {
+    return bitcast<u32>(COVER * sqrt(dot3(distance, distance)));
 }
 
 /// The centre's radius covers N', those of N' cover the centre and their neighbours there. A point without new
 /// neighbours keeps its radius.
-fn store_radii(p: u32) {
+fn store_radii() {
     var farthest = 0.0;
+    // Each side is between two members: the one before looks back on it.
+    var back = 0u;
+    if ring.size > 0u {
+        back = side_cover(ring.size - 1u);
+    }
     for (var i = 0u; i < ring.size; i++) {
-        let slot = slot_at(i);
-        if is_bound(slot) {
-            continue;
+        let member = word(ORDER, i);
+        let ahead = side_cover(i);
+        if !is_bound(word(ID, member)) {
+            let d = vector(OFFSET, member);
+            farthest = max(farthest, dot3(d, d));
+            atomicMax(&next_radii[params.points + word(ID, member)], max(cover(d), max(back, ahead)));
         }
-        let d = offset_of(slot);
-        farthest = max(farthest, dot3(d, d));
-        cover(slot, d);
-        let next = slot_at(next_member(i));
-        if directed_gap(i) < PI && !is_bound(next) {
-            let side = offset_of(next) - d;
-            cover(slot, side);
-            cover(next, side);
-        }
+        back = ahead;
     }
     let radius = select(COVER * sqrt(farthest), ring.radius, farthest == 0.0);
-    atomicStore(&next_radii[p], bitcast<u32>(radius));
+    atomicStore(&next_radii[ring.p], bitcast<u32>(radius));
+}
+
+/// What covers the side from the member at place i to the next one; 0 where there is none, or one of them only bounds gaps.
+fn side_cover(i: u32) -> u32 {
+    let a = word(ORDER, i);
+    let b = word(ORDER, next_member(i));
+    if directed_gap(i) >= PI || is_bound(word(ID, a)) || is_bound(word(ID, b)) {
+        return 0u;
+    }
+    return cover(vector(OFFSET, b) - vector(OFFSET, a));
 }

@@ -11,6 +11,31 @@ struct Point {
     level: u32,
 }
 
+/// What belongs to a point of the level.
+struct Fan {
+    /// The first of its ring entries and their number: its slots.
+    slots: vec2<u32>,
+    /// Within this distance new points are new neighbours: λ1 r, or less in the first step.
+    near: f32,
+    /// A bit for each kernel that leaves it to its variant with rows in the arena.
+    left_over: u32,
+    /// The first of the candidates around it and their number.
+    around: vec2<u32>,
+    /// The number of its conflicts, which follow these, and how many of them come first since they choose their class before it.
+    conflicts: vec2<u32>,
+}
+
+/// A possible new point.
+struct Candidate {
+    /// Position, and ρ: the largest distance to the three corners, or -1 where the triangle has no candidate.
+    place: vec4<f32>,
+    normal: vec3<f32>,
+    /// The class that inserted it, from 1; or ON_CURVE, or FREE.
+    state: u32,
+    /// Corners of its triangle, smallest index first and orientation kept.
+    corners: vec3<u32>,
+}
+
 /// What stays the same for all dispatches of one step.
 struct Params {
     /// Corner of grid cell (0, 0, 0).
@@ -25,18 +50,21 @@ struct Params {
     lambda2: f32,
     /// Number of points of this level.
     points: u32,
-    /// Number of slots: entries of all rings, then new points on creases and boundaries.
+    /// Number of slots: entries of all rings.
     slots: u32,
+    /// Number of candidates that are centres of triangles; then come new points on creases and boundaries.
+    triangles: u32,
+    /// Number of candidates.
+    candidates: u32,
     /// The step, from 1.
     level: u32,
-    /// Capacities in entries of the buffers whose need is known only afterwards.
-    arena_words: u32,
-    ring_entries: u32,
-    conflict_entries: u32,
-    /// Number of slots that are entries of rings.
-    fan_slots: u32,
     /// Number of records of creases and boundaries on this level.
     records: u32,
+    /// Capacities of the buffers whose need is known only afterwards, in entries.
+    arena_words: u32,
+    ring_entries: u32,
+    around_entries: u32,
+    mirror_links: u32,
 }
 
 /// Counters that the host reads between stages.
@@ -45,12 +73,12 @@ struct Counters {
     arena: atomic<u32>,
     /// Largest number of words that one dispatch asked for.
     arena_peak: atomic<u32>,
-    /// Entries of conflict lists that were asked for.
-    conflicts: atomic<u32>,
+    /// Entries of rings that were asked for.
+    slots: atomic<u32>,
+    /// Entries of lists of candidates around points and of conflicts that were asked for.
+    around: atomic<u32>,
     /// Links of mirrored conflicts that were asked for.
     mirrored: atomic<u32>,
-    /// Points without a class after the last round.
-    uncolored: atomic<u32>,
     /// Number of classes.
     classes: atomic<u32>,
     /// Points without a ring.
@@ -59,6 +87,10 @@ struct Counters {
     ball_low: atomic<u32>,
     /// The same, high word.
     ball_high: atomic<u32>,
+    /// A bit for each kernel that left points to its variant with rows in the arena.
+    left_over: atomic<u32>,
+    /// The longest row in the arena.
+    longest_row: atomic<u32>,
     /// One more than the last point for which the driver cut loops short; see cut_loops.wgsl.
     cut_loops: atomic<u32>,
 }
@@ -69,18 +101,15 @@ const NONE: u32 = 0xffffffffu;
 /// Bits of a point's level.
 const LEVEL_BITS: u32 = 8u;
 
-// Last words of arena entries of the neighbourhood: the point whose member it is, with a bit that says that fuzzy planes
-// removed it; or what says that it came back.
-const REMOVED: u32 = 0x80000000u;
-/// Of members that are removed from the start, since they may lie on another sheet.
-const DOUBTFUL: u32 = 0x40000000u;
-const BACK: u32 = 0xfffffffeu;
+// Bits of the kernels that leave points over.
+const NEIGHBORHOOD: u32 = 1u;
+const CONFLICTS: u32 = 2u;
+const INSERTION: u32 = 4u;
+const NEXT_RING: u32 = 8u;
 
-// States of a candidate slot; from 1 on, one more than the class that inserted it. Classes count from 1 here: new points
-// on creases and boundaries are in class 0.
-const FREE: u32 = 0u;
-const ON_CURVE: u32 = 1u;
-const USED: u32 = 0xfffffffeu;
+// States of a candidate besides the class that inserted it.
+const FREE: u32 = 0xffffffffu;
+const ON_CURVE: u32 = 0u;
 
 @group(0) @binding(0) var<uniform> params: Params;
 /// What changes from dispatch to dispatch; each kernel says what the four words are.

@@ -5,5 +5,5 @@ override own_side: bool = true;
 
 /// Whether normals are on one side of the surface, so that their points see each other.
 fn same_side(a: vec3<f32>, b: vec3<f32>) -> bool {
-    return !own_side || dot3(a, b) > 0.0;
+    return !own_side | dot3(a, b) > 0.0;
 }

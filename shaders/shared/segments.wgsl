@@ -1,4 +1,4 @@
-// Segments of creases, and a walk over those near a place. Twin: `Curves` in crates/reference/src/visible.rs
+// Segments of creases, and those near a place. Twin: `Curves` in crates/reference/src/visible.rs
 //
 // Expects what curves.wgsl has.
 
@@ -26,23 +26,19 @@ fn segment_bits() -> vec3<u32> {
     return vec3(curve_word(4), curve_word(5), curve_word(6));
 }
 
-/// As ball_walk.
-fn segment_walk(center: vec3<f32>, radius: f32) -> BallWalk {
+/// As ball_span.
+fn segment_span(center: vec3<f32>, radius: f32) -> Span {
     let reach = vec3(radius * SLACK + bitcast<f32>(curve_word(7)) * 1e-4);
-    return walk_between(segment_cell(center - reach), segment_cell(center + reach), segment_bits());
+    return span_between(segment_cell(center - reach), segment_cell(center + reach), segment_bits());
 }
 
-/// The next segment of a walk, or NONE.
-fn next_segment(walk: ptr<function, BallWalk>) -> u32 {
-    while (*walk).item == (*walk).end {
-        if (*walk).run == (*walk).runs {
-            return NONE;
-        }
-        let cells = next_run(walk, segment_bits());
-        (*walk).item = curve_word(curve_word(10) + cells.x);
-        (*walk).end = curve_word(curve_word(10) + cells.y);
-    }
-    let segment = curve_word(curve_word(11) + (*walk).item);
-    (*walk).item += 1u;
-    return segment;
+/// The entries of a run of segments: the first one and that after the last.
+fn segments_of_run(span: Span, run: u32) -> vec2<u32> {
+    let cells = cells_of_run(span, run, segment_bits());
+    return vec2(curve_word(curve_word(10) + cells.x), curve_word(curve_word(10) + cells.y));
+}
+
+/// The segment of an entry.
+fn segment_at(entry: u32) -> u32 {
+    return curve_word(curve_word(11) + entry);
 }

@@ -32,8 +32,14 @@ fn is_near_curves(position: vec3<f32>, radius: f32) -> bool {
     if !with_curves || !separating_segments {
         return false;
     }
-    var walk = segment_walk(position, (AROUND + 0.5) * radius + longest_half());
-    return next_segment(&walk) != NONE;
+    let span = segment_span(position, (AROUND + 0.5) * radius + longest_half());
+    for (var run = 0u; run < span.runs; run++) {
+        let entries = segments_of_run(span, run);
+        if entries.x < entries.y {
+            return true;
+        }
+    }
+    return false;
 }
 
 /// Whether a point sees another one within its radius. `near_curves` as above.
@@ -138,12 +144,16 @@ fn is_fenced(center: Seen, other: Seen, d: vec3<f32>, d2: f32) -> bool {
     }
     let middle = center.position + d * 0.5;
     let reach = AROUND * sqrt(d2) + longest_half();
-    var walk = segment_walk(middle, reach);
-    for (var s = next_segment(&walk); s != NONE; s = next_segment(&walk)) {
-        let ends = segment_side(s, 0u);
-        let off = (record_position(ends.x) + record_position(ends.y)) * 0.5 - middle;
-        if dot3(off, off) <= reach * reach && separates(s, center, other) {
-            return true;
+    let span = segment_span(middle, reach);
+    for (var run = 0u; run < span.runs; run++) {
+        let entries = segments_of_run(span, run);
+        for (var i = entries.x; i < entries.y; i++) {
+            let s = segment_at(i);
+            let ends = segment_side(s, 0u);
+            let off = (record_position(ends.x) + record_position(ends.y)) * 0.5 - middle;
+            if dot3(off, off) <= reach * reach && separates(s, center, other) {
+                return true;
+            }
         }
     }
     return false;

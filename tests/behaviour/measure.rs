@@ -40,7 +40,7 @@ impl<'a> Nearest<'a> {
         let mut ball = self.grid.shape.cell;
         loop {
             let mut nearest = f32::MAX;
-            self.grid.visit_ball(x, ball, |j| {
+            self.grid.visit_ball(x, ball, |j, _| {
                 if other(j) {
                     nearest = nearest.min((self.positions[j as usize] - x).length());
                 }

@@ -20,14 +20,14 @@ fn gaps_are_those_of_the_reference() {
     let mut found_any = false;
     for step in steps() {
         let n = step.level.len();
-        let starts = device.buffer("starts", &step.state.rings.starts);
+        let fans = device.buffer("fans", &step.fans(0));
         let entries = device.buffer("entries", &step.ring_entries());
         for theta_b in [0.0f32, 1.2, 160f32.to_radians()] {
             let expected = widest_gaps(step, theta_b);
             let gaps = device.output::<[u32; 4]>("gaps", n);
             let count = device.output::<u32>("count", 1);
             let words = [theta_b.to_bits(), n as u32, 0, 0];
-            let buffers = [&starts, &entries, &gaps, &count];
+            let buffers = [&fans, &entries, &gaps, &count];
             device.run(step.run("boundary_gaps", words, n), &buffers);
             let size = device.read::<u32>(&count, 1)[0] as usize;
             // They come in the order of timing.
@@ -46,11 +46,11 @@ fn a_list_that_is_too_short_is_told_and_not_overrun() {
     let mut device = device();
     let step = &steps()[0];
     let n = step.level.len();
-    let starts = device.buffer("starts", &step.state.rings.starts);
+    let fans = device.buffer("fans", &step.fans(0));
     let entries = device.buffer("entries", &step.ring_entries());
     let (gaps, count) = (device.output::<[u32; 4]>("gaps", 5), device.output::<u32>("count", 1));
     let run = step.run("boundary_gaps", [0f32.to_bits(), 5, 0, 0], n);
-    device.run(run, &[&starts, &entries, &gaps, &count]);
+    device.run(run, &[&fans, &entries, &gaps, &count]);
     assert_eq!(device.read::<u32>(&count, 1)[0] as usize, widest_gaps(step, 0.0).len());
     // Reading checks the guard words.
     let _: Vec<[u32; 4]> = device.read(&gaps, 5);

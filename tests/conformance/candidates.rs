@@ -1,38 +1,56 @@
-//! The candidates kernel on the reference's rings.
+//! The kernels of the candidates, one after the other on the reference's rings.
 
 use crate::harness::{compare, compare_equal, device, must, steps};
-use crate::tolerance::{NORMAL, POSITION};
+use crate::tolerance::{NORMAL, POSITION, RADIUS};
+use surfine::records::{Candidate, Fan};
 
 #[test]
 fn candidates_are_those_of_the_reference() {
     let mut device = device();
     for step in steps() {
-        let slots = step.state.candidates.len();
-        let points = device.buffer("points", &step.points());
-        let starts = device.buffer("starts", &step.state.rings.starts);
-        let entries = device.buffer("entries", &step.ring_entries());
-        let positions = device.output::<[f32; 4]>("positions", slots);
-        let normals = device.output::<[f32; 4]>("normals", slots);
-        let (owners, states) =
-            (device.output::<u32>("owners", slots), device.output::<u32>("states", slots));
-        let curves = device.buffer("curves", &step.curves());
-        let inputs = [&points, &starts, &entries];
-        let outputs = [&positions, &normals, &owners, &states, &curves];
-        let buffers = [&inputs[..], &outputs].concat();
-        let invocations = step.level.len().max(step.level.curve_points.len());
-        device.run(step.run("candidates", [0; 4], invocations), &buffers);
-
+        let (n, slots) = (step.level.len(), step.state.rings.len());
+        let expected = &step.state.candidates;
         let what = |column| format!("{}: candidate {column}", step.name);
-        let scale = step.state.candidates.rho.iter().copied().fold(0.0, f32::max);
-        let found: Vec<f32> = device.read(&positions, 4 * slots);
-        let expected = step.candidate_positions().concat();
-        must(compare(&what("positions"), &expected, &found, device.allows(POSITION), scale));
-        let found: Vec<f32> = device.read(&normals, 4 * slots);
-        let expected = step.candidate_normals().concat();
-        must(compare(&what("normals"), &expected, &found, device.allows(NORMAL), 1.0));
-        let owners: Vec<u32> = device.read(&owners, slots);
-        must(compare_equal(&what("owners"), &step.state.candidates.owners, &owners));
-        let states: Vec<u32> = device.read(&states, slots);
-        must(compare_equal(&what("states"), &step.initial_states(), &states));
+        let points = device.buffer("points", &step.points());
+        let without_near = |fan: Fan| Fan { near: 0.0, ..fan };
+        let fans: Vec<Fan> = step.fans(0).into_iter().map(without_near).collect();
+        let fans = device.guarded("fans", &fans);
+        let entries = device.buffer("entries", &step.ring_entries());
+        let curves = device.buffer("curves", &step.curves());
+        let of_slot = device.output::<u32>("of slot", slots);
+        let counts = device.output::<u32>("counts", n + 1);
+        let buffers = [&points, &fans, &entries, &of_slot, &counts, &curves];
+        device.run(step.run("candidates_home", [0; 4], n), &buffers);
+        let near: Vec<f32> = device.read::<Fan>(&fans, n).iter().map(|fan| fan.near).collect();
+        let scale = expected.near.iter().copied().fold(0.0, f32::max);
+        must(compare(&what("near"), &expected.near, &near, device.allows(RADIUS), scale));
+
+        let mut summed: Vec<u32> = device.read(&counts, n + 1);
+        for i in 1..=n {
+            summed[i] += summed[i - 1];
+        }
+        assert_eq!(summed[n] as usize, expected.first_on_curve, "{}", step.name);
+        let firsts = device.buffer("firsts", &summed);
+        let numbers = device.output::<u32>("numbers", slots);
+        let candidates = device.output::<Candidate>("candidates", expected.len());
+        let buffers = [&points, &fans, &entries, &of_slot, &firsts, &numbers, &candidates, &curves];
+        device.run(step.run("candidates_number", [0; 4], n), &buffers);
+        device.run(step.run("candidates_link", [0; 4], slots), &[&numbers, &of_slot]);
+        let found: Vec<u32> = device.read(&of_slot, slots);
+        must(compare_equal(&what("of slot"), &expected.of_slot, &found));
+
+        let run = step.run("candidates", [0; 4], expected.len());
+        device.run(run, &[&points, &candidates, &curves]);
+        let found: Vec<Candidate> = device.read(&candidates, expected.len());
+        let rows = step.candidates();
+        let places = |c: &[Candidate]| c.iter().flat_map(|c| c.place).collect::<Vec<_>>();
+        let normals = |c: &[Candidate]| c.iter().flat_map(|c| c.normal).collect::<Vec<_>>();
+        let rest = |c: &[Candidate]| c.iter().map(|c| (c.corners, c.state)).collect::<Vec<_>>();
+        must(compare_equal(&what("corners and states"), &rest(&rows), &rest(&found)));
+        let scale = expected.rho.iter().copied().fold(0.0, f32::max);
+        let allowed = device.allows(POSITION);
+        must(compare(&what("places"), &places(&rows), &places(&found), allowed, scale));
+        let allowed = device.allows(NORMAL);
+        must(compare(&what("normals"), &normals(&rows), &normals(&found), allowed, 1.0));
     }
 }

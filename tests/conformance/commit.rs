@@ -1,6 +1,6 @@
 //! The commit kernels on the reference's decisions.
 
-use crate::harness::{FREE, USED, compare, compare_equal, device, must, steps};
+use crate::harness::{compare, compare_equal, device, must, steps};
 use crate::tolerance::{NORMAL, POSITION};
 use surfine::records::{LEVEL_BITS, Point};
 use surfine_reference::commit::commit;
@@ -9,48 +9,33 @@ use surfine_reference::commit::commit;
 fn the_next_level_is_that_of_the_reference() {
     let mut device = device();
     for step in steps() {
-        let (n, slots) = (step.level.len(), step.state.candidates.len());
-        let insertion = &step.state.insertion;
-        let mut expected = step.level.clone();
+        let (n, count) = (step.level.len(), step.state.candidates.len());
         let state = &step.state;
+        let mut expected = step.level.clone();
         let parents = commit(&mut expected, state, &step.refine);
 
-        let mut states = step.initial_states();
-        for (own, &inserted) in states.iter_mut().zip(&insertion.inserted) {
-            if *own == FREE {
-                *own = if inserted { 2 } else { USED };
-            }
-        }
-        let states = device.buffer("states", &states);
-        let indices = device.output::<u32>("indices", slots + 1);
-        device.run(step.run("commit_count", [0; 4], slots), &[&states, &indices]);
-        let mut summed: Vec<u32> = device.read(&indices, slots + 1);
-        for i in 1..=slots {
+        let candidates = device.buffer("candidates", &step.decided());
+        let indices = device.output::<u32>("indices", count + 1);
+        device.run(step.run("commit_count", [0; 4], count), &[&candidates, &indices]);
+        let mut summed: Vec<u32> = device.read(&indices, count + 1);
+        for i in 1..=count {
             summed[i] += summed[i - 1];
         }
-        assert_eq!(summed[slots] as usize, parents.len(), "{}", step.name);
+        assert_eq!(summed[count] as usize, parents.len(), "{}", step.name);
 
         let mut records = step.points();
         records.resize(expected.len(), Point::default());
-        let guarded = [bytemuck::cast_slice(&records), &[0xa5u8; 64][..]].concat();
-        let points = device.buffer("points", &guarded);
-        let ring_starts = device.buffer("ring starts", &state.rings.starts);
-        let ring_entries = device.buffer("ring entries", &step.ring_entries());
-        let positions = device.buffer("positions", &step.candidate_positions());
-        let normals = device.buffer("normals", &step.candidate_normals());
-        let owners = device.buffer("owners", &state.candidates.owners);
+        let points = device.guarded("points", &records);
         let indices = device.buffer("indices", &summed);
-        let covers = &state.covers;
-        let radii = [&insertion.radii, &insertion.slot_radii, &covers.radii, &covers.slot_radii];
+        let (insertion, covers) = (&state.insertion, &state.covers);
+        let radii =
+            [&insertion.radii, &insertion.candidate_radii, &covers.radii, &covers.candidate_radii];
         let radii: Vec<f32> = radii.into_iter().flatten().copied().collect();
         let radii = device.buffer("radii", &radii);
         let found_parents = device.output::<[u32; 3]>("parents", parents.len());
-        let rings = [&points, &ring_starts, &ring_entries];
-        let candidates = [&positions, &normals, &owners];
         let curves = device.buffer("curves", &step.curves());
-        let outputs = [&indices, &radii, &found_parents, &curves];
-        let buffers = [&rings[..], &candidates, &outputs].concat();
-        device.run(step.run("commit", [0; 4], n.max(slots)), &buffers);
+        let buffers = [&points, &candidates, &indices, &radii, &found_parents, &curves];
+        device.run(step.run("commit", [0; 4], n.max(count)), &buffers);
 
         let what = |column| format!("{}: {column}", step.name);
         let found: Vec<Point> = device.read(&points, expected.len());

@@ -1,71 +1,112 @@
-//! The two kernels of the conflict graph on the reference's candidates.
+//! The kernels of what is around each point and of the conflict graph, on the reference's candidates.
 
 use crate::harness::{
-    CONFLICT_ENTRIES, Device, Step, compare_equal, device, grid_words, must, steps,
+    ARENA_WORDS, CONFLICTS, Device, MIRROR_LINKS, Step, compare_equal, device, grid_words, must,
+    steps,
 };
-use surfine::records::Counters;
+use surfine::records::Fan;
 
-/// What the kernels leave for the colouring: lists, and links to the points that only one side found.
+/// What the kernels leave: lists, and links to the points whose conflicts only the other side found.
 pub(crate) struct ConflictBuffers {
-    pub blocks: Vec<[u32; 2]>,
-    pub entries: Vec<u32>,
+    pub fans: Vec<Fan>,
+    pub around: Vec<u32>,
     pub heads: Vec<u32>,
     pub links: Vec<[u32; 2]>,
 }
 
 impl ConflictBuffers {
-    pub(crate) fn compute(device: &mut Device, step: &Step) -> Self {
+    /// Runs a kernel and, if it leaves nothing over, the mirroring one. All points were left over before.
+    pub(crate) fn compute(device: &mut Device, step: &Step, kernel: &str) -> Option<Self> {
         let n = step.level.len();
         let points = device.buffer("points", &step.points());
-        let starts = device.buffer("starts", &step.state.rings.starts);
-        let candidates = device.buffer("candidates", &step.candidate_positions());
-        let normals = device.buffer("normals", &step.candidate_normals());
-        let owners = device.buffer("owners", &step.state.candidates.owners);
-        let grid = device.buffer("grid", &grid_words(&step.state.candidate_grid));
-        let blocks = device.output::<[u32; 2]>("blocks", n);
-        let entries = device.output::<u32>("entries", CONFLICT_ENTRIES);
-        let heads = device.output::<u32>("heads", n);
-        let links = device.output::<[u32; 2]>("links", CONFLICT_ENTRIES);
-        let counters = device.output::<u32>("counters", size_of::<Counters>() / 4);
-        let inputs = [&points, &starts, &candidates, &normals, &owners, &grid];
-        let lists = [&blocks, &entries];
-        device.run(step.run("conflicts", [0; 4], n), &[&inputs[..], &lists, &[&counters]].concat());
-        let mirror = [&blocks, &entries, &heads, &links, &counters];
-        device.run(step.run("conflicts_mirror", [0; 4], n), &mirror);
-        let counters: Vec<Counters> = device.read(&counters, 1);
-        assert_eq!(counters[0].cut_loops, 0, "{}", step.name);
-        Self {
-            blocks: device.read(&blocks, n),
-            entries: device.read(&entries, CONFLICT_ENTRIES),
-            heads: device.read(&heads, n),
-            links: device.read(&links, CONFLICT_ENTRIES),
+        let before = |fan: Fan| Fan { around: [0; 2], conflicts: [0; 2], ..fan };
+        let fans: Vec<Fan> = step.fans(CONFLICTS).into_iter().map(before).collect();
+        let fans = device.guarded("fans", &fans);
+        let of_slot = device.buffer("of slot", &step.state.candidates.of_slot);
+        let candidates = device.buffer("candidates", &step.candidates());
+        let (starts, places) = grid_words(&step.state.candidate_grid);
+        let (grid, places) = (device.buffer("grid", &starts), device.buffer("places", &places));
+        let entries = step.params().around_entries as usize;
+        let around = device.output::<u32>("around", entries);
+        let arena = device.output::<u32>("arena", ARENA_WORDS);
+        let counters = device.counters();
+        let curves = device.buffer("curves", &step.curves());
+        let inputs = [&points, &fans, &of_slot, &candidates, &grid, &places];
+        let buffers = [&inputs[..], &[&around, &arena, &counters, &curves]].concat();
+        device.run(step.run(kernel, [0, n as u32, 0, 0], n), &buffers);
+        if device.read_counters(&counters, &step.name).left_over & CONFLICTS != 0 {
+            assert_eq!(kernel, "conflicts", "the arena holds all");
+            return None;
         }
+        let heads = device.output::<u32>("heads", n);
+        let links = device.output::<[u32; 2]>("links", MIRROR_LINKS);
+        let mirror = [&fans, &around, &heads, &links, &counters];
+        device.run(step.run("conflicts_mirror", [0; 4], n), &mirror);
+        assert!(device.read_counters(&counters, &step.name).mirrored as usize <= MIRROR_LINKS);
+        Some(Self {
+            fans: device.read(&fans, n),
+            around: device.read(&around, entries),
+            heads: device.read(&heads, n),
+            links: device.read(&links, MIRROR_LINKS),
+        })
     }
 
-    /// The neighbours of a point, each once for each time it is noted.
-    fn neighbors(&self, p: usize) -> Vec<u32> {
-        let [first, size] = self.blocks[p].map(|v| v as usize);
-        let mut neighbors = self.entries[first..first + size].to_vec();
+    /// The candidates around a point, ascending.
+    fn around(&self, p: usize) -> Vec<u32> {
+        let [first, size] = self.fans[p].around.map(|v| v as usize);
+        sorted(self.around[first..first + size].to_vec())
+    }
+
+    /// The points in conflict with it as it found them itself, those that choose before it first.
+    fn found(&self, p: usize) -> &[u32] {
+        let Fan { around, conflicts, .. } = self.fans[p];
+        let first = (around[0] + around[1]) as usize;
+        &self.around[first..first + conflicts[0] as usize]
+    }
+
+    /// The points in conflict with it that choose before it, each once for each time it is noted.
+    fn before(&self, p: usize) -> Vec<u32> {
+        let mut before = self.found(p)[..self.fans[p].conflicts[1] as usize].to_vec();
         let mut link = self.heads[p];
         while link != 0 {
             let [q, next] = self.links[link as usize - 1];
-            neighbors.push(q);
+            before.push(q);
             link = next;
         }
-        neighbors.sort_unstable();
-        neighbors
+        sorted(before)
     }
 }
 
+fn sorted(mut list: Vec<u32>) -> Vec<u32> {
+    list.sort_unstable();
+    list
+}
+
 #[test]
-fn the_graph_is_that_of_the_reference() {
+fn lists_and_graph_are_those_of_the_reference() {
     let mut device = device();
     for step in steps() {
-        let found = ConflictBuffers::compute(&mut device, step);
-        for p in 0..step.level.len() {
-            let what = format!("{}: conflicts of {p}", step.name);
-            // Equal lists also say that no conflict is noted twice.
-            must(compare_equal(&what, step.state.conflicts.neighbors(p), &found.neighbors(p)));
+        let n = step.level.len();
+        let reference = &step.state.conflicts;
+        for kernel in ["conflicts", "conflicts_large"] {
+            let Some(found) = ConflictBuffers::compute(&mut device, step, kernel) else { continue };
+            // Each conflict must be known to the one of the two who chooses later, and to nobody else.
+            let mut all = vec![Vec::new(); n];
+            for p in 0..n {
+                let what = format!("{} {kernel}: around {p}", step.name);
+                let around = sorted(reference.around.of(p).to_vec());
+                must(compare_equal(&what, &around, &found.around(p)));
+                for q in found.before(p) {
+                    all[p].push(q);
+                    all[q as usize].push(p as u32);
+                }
+            }
+            for (p, all) in all.into_iter().enumerate() {
+                let what = format!("{} {kernel}: conflicts of {p}", step.name);
+                // Equal lists also say that no conflict is noted twice.
+                let graph = sorted(reference.graph.of(p).to_vec());
+                must(compare_equal(&what, &graph, &sorted(all)));
+            }
         }
     }
 }

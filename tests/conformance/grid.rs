@@ -4,41 +4,36 @@ use crate::harness::{Device, Step, compare_equal, device, grid_words, must, step
 use surfine::testing::Buffer;
 use surfine_points::Grid;
 
-/// Entries of a cell come in the order of timing: sort them before they are compared.
-fn sorted_cells(grid: &Grid, words: &[u32]) -> Vec<u32> {
-    let (starts, items) = words.split_at(grid.starts.len());
-    let mut items = items.to_vec();
-    for pair in starts.windows(2) {
-        items[pair[0] as usize..pair[1] as usize].sort_unstable();
-    }
-    [starts, &items].concat()
-}
-
-/// Counts, sums and fills as the engine does, with the prefix sum taken on the host.
+/// Counts, sums and fills as the engine does, with the prefix sum taken on the host. `stride` is in words of four.
 fn check(
     device: &mut Device,
     step: &Step,
-    kernel: &str,
-    input: &Buffer,
-    count: usize,
+    items: &Buffer,
+    [count, stride]: [u32; 2],
     expected: &Grid,
 ) {
     let cells = expected.shape.cells();
-    let words = cells + 1 + expected.items.len();
-    let (grid, ranks) =
-        (device.output::<u32>("grid", words), device.output::<[u32; 2]>("ranks", count));
-    device.run(step.run(kernel, [0; 4], count), &[input, &grid, &ranks]);
-    let mut counted: Vec<u32> = device.read(&grid, words);
+    let entries = expected.items.len();
+    let grid = device.output::<u32>("grid", cells + 1);
+    let ranks = device.output::<[u32; 2]>("ranks", count as usize);
+    let words = [count, stride, 0, 0];
+    device.run(step.run("grid_count", words, count as usize), &[items, &grid, &ranks]);
+    let mut counted: Vec<u32> = device.read(&grid, cells + 1);
     for i in 1..=cells {
         counted[i] += counted[i - 1];
     }
-    must(compare_equal(&format!("{}: starts", step.name), &expected.starts, &counted[..=cells]));
-    let summed = [bytemuck::cast_slice(&counted), &[0xa5u8; 64][..]].concat();
-    let grid = device.buffer("summed", &summed);
-    device.run(step.run("sort_fill", [count as u32, cells as u32, 0, 0], count), &[&ranks, &grid]);
-    let filled: Vec<u32> = device.read(&grid, words);
-    let found = sorted_cells(expected, &filled);
-    must(compare_equal(&format!("{}: entries", step.name), &grid_words(expected), &found));
+    let (starts, places) = grid_words(expected);
+    must(compare_equal(&format!("{}: starts", step.name), &starts, &counted));
+    let grid = device.buffer("summed", &counted);
+    let found = device.output::<[u32; 4]>("places", entries);
+    let run = step.run("grid_fill", words, count as usize);
+    device.run(run, &[items, &ranks, &grid, &found]);
+    // Entries of a cell come in the order of timing: sort them before they are compared.
+    let mut found: Vec<[u32; 4]> = device.read(&found, entries);
+    for pair in starts.windows(2) {
+        found[pair[0] as usize..pair[1] as usize].sort_unstable_by_key(|entry| entry[3]);
+    }
+    must(compare_equal(&format!("{}: entries", step.name), &places, &found));
 }
 
 #[test]
@@ -46,10 +41,11 @@ fn points_and_candidates_are_sorted_by_cell() {
     let mut device = device();
     for step in steps() {
         let points = device.buffer("points", &step.points());
-        check(&mut device, step, "grid_points", &points, step.level.len(), &step.state.grid);
-        let candidates = device.buffer("candidates", &step.candidate_positions());
-        let slots = step.state.candidates.len();
-        check(&mut device, step, "grid_candidates", &candidates, slots, &step.state.candidate_grid);
+        let count = step.level.len() as u32;
+        check(&mut device, step, &points, [count, 2], &step.state.grid);
+        let candidates = device.buffer("candidates", &step.candidates());
+        let count = step.state.candidates.len() as u32;
+        check(&mut device, step, &candidates, [count, 3], &step.state.candidate_grid);
     }
 }
 

@@ -5,10 +5,10 @@ use crate::tolerance::{EXACT, Tolerance};
 use std::collections::HashMap;
 use std::sync::{LazyLock, Mutex, MutexGuard, OnceLock};
 use surfine::curves::table;
-use surfine::records::{LEVEL_BITS, Params, Point};
+use surfine::records::{Candidate, Counters, Fan, LEVEL_BITS, Params, Point};
 use surfine::shaders::SHADERS;
 use surfine::testing::{Buffer, Commands, Uniforms, constants, read};
-use surfine::{Boundary, Gpu, Kernel, Mode, RefineParams, Refiner};
+use surfine::{Boundary, Gpu, Kernel, Mode, RefineParams, Refiner, Vec3};
 use surfine_features::{Features, Records};
 use surfine_points::{Grid, PointSet};
 use surfine_reference::boundary::boundary;
@@ -83,6 +83,25 @@ impl Device {
         let guards = &bytes[used..];
         assert!(guards.iter().all(|&b| b == GUARD), "a kernel wrote behind its buffer");
         bytemuck::pod_collect_to_vec(&bytes[..used])
+    }
+
+    /// Zeroed counters.
+    pub(crate) fn counters(&self) -> Buffer {
+        self.output::<u32>("counters", size_of::<Counters>() / 4)
+    }
+
+    /// Reads counters and checks that no loop was cut and no arena too small.
+    pub(crate) fn read_counters(&self, buffer: &Buffer, name: &str) -> Counters {
+        let counters = self.read::<Counters>(buffer, 1)[0];
+        assert_eq!(counters.cut_loops, 0, "{name}");
+        assert!(counters.arena_peak as usize <= ARENA_WORDS, "{name}: the arena is too small");
+        counters
+    }
+
+    /// A buffer with `data` that kernels change, with guard words behind it.
+    pub(crate) fn guarded<T: bytemuck::Pod>(&self, label: &'static str, data: &[T]) -> Buffer {
+        let guarded = [bytemuck::cast_slice(data), &[GUARD; GUARD_BYTES]].concat();
+        Buffer::with_data(self.gpu(), label, &guarded).expect("test clouds fit every device")
     }
 
     /// Runs one kernel once.
@@ -161,37 +180,22 @@ impl Step {
         table(self.features().unwrap_or(&Features::default()), &self.level.curve_points)
     }
 
-    /// The candidates by cell, with the table of curves behind the last slot's place.
-    pub(crate) fn candidate_grid_words(&self) -> Vec<u32> {
-        let grid = &self.state.candidate_grid;
-        let mut words = grid_words(grid);
-        words.resize(grid.starts.len() + self.state.candidates.len(), 0);
-        [words, self.curves()].concat()
-    }
-
-    /// The states of the slots before the first class.
-    pub(crate) fn initial_states(&self) -> Vec<u32> {
-        let c = &self.state.candidates;
-        let state = |slot: usize| match (slot >= c.first_on_curve, c.exists(slot)) {
-            (true, _) => ON_CURVE,
-            (false, true) => FREE,
-            (false, false) => u32::MAX,
-        };
-        (0..c.len()).map(state).collect()
-    }
-
     /// The uniform of this step, with capacities that suffice.
     pub(crate) fn params(&self) -> Params {
+        let state = &self.state;
         Params {
             points: self.level.len() as u32,
-            slots: self.state.candidates.len() as u32,
-            fan_slots: self.state.rings.len() as u32,
-            records: self.features().map_or(0, |features| features.old as u32),
+            slots: state.rings.len() as u32,
+            triangles: state.candidates.first_on_curve as u32,
+            candidates: state.candidates.len() as u32,
             level: self.level.step + 1,
+            records: self.features().map_or(0, |features| features.old as u32),
             arena_words: ARENA_WORDS as u32,
-            ring_entries: self.state.rings.len() as u32,
-            conflict_entries: CONFLICT_ENTRIES as u32,
-            ..Params::new(&self.refine).with_grid(&self.state.grid.shape)
+            ring_entries: state.rings.len() as u32,
+            around_entries: (state.conflicts.around.items.len() + state.conflicts.graph.items.len())
+                as u32,
+            mirror_links: MIRROR_LINKS as u32,
+            ..Params::new(&self.refine).with_grid(&state.grid.shape)
         }
     }
 
@@ -218,36 +222,80 @@ impl Step {
     }
 
     pub(crate) fn ring_entries(&self) -> Vec<[u32; 2]> {
-        self.state.rings.entries.iter().map(|e| [e.id, e.angle.to_bits()]).collect()
+        self.state.rings.lists.items.iter().map(|e| [e.id, e.angle.to_bits()]).collect()
     }
 
-    pub(crate) fn candidate_positions(&self) -> Vec<[f32; 4]> {
-        let c = &self.state.candidates;
-        (0..c.rho.len()).map(|i| c.positions[i].extend(c.rho[i]).to_array()).collect()
+    /// The fans with the reference's lists, all of them left over by these kernels.
+    pub(crate) fn fans(&self, left_over: u32) -> Vec<Fan> {
+        let LevelState { rings, candidates, conflicts, .. } = &self.state;
+        let (mut first, mut fans) = (0, Vec::new());
+        for p in 0..self.level.len() {
+            let slots = rings.slots(p);
+            let around = conflicts.around.of(p).len() as u32;
+            let graph = conflicts.graph.of(p).len() as u32;
+            fans.push(Fan {
+                slots: [slots.start as u32, slots.len() as u32],
+                near: candidates.near[p],
+                left_over,
+                around: [first, around],
+                // All of them: none is mirrored.
+                conflicts: [graph, graph],
+            });
+            first += around + graph;
+        }
+        fans
     }
 
-    pub(crate) fn candidate_normals(&self) -> Vec<[f32; 4]> {
+    /// The lists of [`Step::fans`].
+    pub(crate) fn around(&self) -> Vec<u32> {
+        let conflicts = &self.state.conflicts;
+        let of = |p: usize| [conflicts.around.of(p), conflicts.graph.of(p)].concat();
+        (0..self.level.len()).flat_map(of).collect()
+    }
+
+    /// The candidates before the first class.
+    pub(crate) fn candidates(&self) -> Vec<Candidate> {
         let c = &self.state.candidates;
-        // New points on curves have no owner.
-        let near = |i: usize| c.near.get(c.owners[i] as usize).copied().unwrap_or(0.0);
-        (0..c.rho.len()).map(|i| c.normals[i].extend(near(i)).to_array()).collect()
+        let candidate = |i: usize| Candidate {
+            place: c.positions[i].extend(c.rho[i]).to_array(),
+            normal: c.normals[i].to_array(),
+            state: if i < c.first_on_curve { FREE } else { ON_CURVE },
+            corners: c.corners[i],
+            unused: 0,
+        };
+        (0..c.len()).map(candidate).collect()
+    }
+
+    /// The candidates as all classes leave them.
+    pub(crate) fn decided(&self) -> Vec<Candidate> {
+        let states = &self.state.insertion.states;
+        let decide = |(c, &state): (Candidate, &u32)| Candidate { state, ..c };
+        self.candidates().into_iter().zip(states).map(decide).collect()
     }
 }
 
-/// The cells of a grid as the kernels have them: starts, then entries.
-pub(crate) fn grid_words(grid: &Grid) -> Vec<u32> {
-    [grid.starts.as_slice(), &grid.items].concat()
+/// A grid as the kernels have it: where each cell begins, and bits of the positions of the entries with their indices.
+pub(crate) fn grid_words(grid: &Grid) -> (Vec<u32>, Vec<[u32; 4]>) {
+    let place = |(&id, x): (&u32, &Vec3)| {
+        let [x, y, z] = x.to_array().map(f32::to_bits);
+        [x, y, z, id]
+    };
+    (grid.starts.clone(), grid.items.iter().zip(&grid.places).map(place).collect())
 }
 
-/// States of a slot, as `shaders/shared/records.wgsl` has them: a candidate that no class has tried, a new point on a curve,
-/// and a candidate that was tried in vain. What a class inserts has a state of 2 on.
-pub(crate) const FREE: u32 = 0;
-pub(crate) const ON_CURVE: u32 = 1;
-pub(crate) const USED: u32 = u32::MAX - 1;
+/// States of a candidate, as `shaders/shared/records.wgsl` has them.
+pub(crate) const FREE: u32 = u32::MAX;
+pub(crate) const ON_CURVE: u32 = 0;
+
+// Bits of the kernels that leave points over.
+pub(crate) const NEIGHBORHOOD: u32 = 1;
+pub(crate) const CONFLICTS: u32 = 2;
+pub(crate) const INSERTION: u32 = 4;
+pub(crate) const NEXT_RING: u32 = 8;
 
 /// Capacities that every small cloud keeps.
-pub(crate) const ARENA_WORDS: usize = 1 << 20;
-pub(crate) const CONFLICT_ENTRIES: usize = 1 << 18;
+pub(crate) const ARENA_WORDS: usize = 1 << 21;
+pub(crate) const MIRROR_LINKS: usize = 1 << 16;
 
 /// What a kernel is run with, besides its buffers.
 #[derive(Clone, Copy)]

@@ -96,7 +96,7 @@ fn on_nothing(points: &PointSet) -> Scene {
 }
 
 /// Fails unless the pixels of the unit sphere are covered and no others, but for those within this share of its radius
-/// around the outline. The sphere of 200 points after two levels has discs of up to 0.163 that stick out by 0.013, and a
+/// around the outline. The sphere of 200 points after two levels has discs of up to 0.258 that stick out by 0.033, and a
 /// subpixel in a corner lies 0.35 pixels from the middle.
 #[track_caller]
 pub(crate) fn fills_outline(scene: &Scene, blur: f64) {
@@ -110,11 +110,11 @@ pub(crate) fn fills_outline(scene: &Scene, blur: f64) {
 #[test]
 fn a_sphere_covers_its_outline_and_no_more() {
     let scene = on_nothing(&sphere(2));
-    fills_outline(&scene, 0.015);
+    fills_outline(&scene, 0.035);
     // Near, where perspective is strong, and aside, where the outline is an ellipse that the picture's edge cuts. The
     // radius of the sphere is 67 pixels here.
-    fills_outline(&scene.clone().from(Vec3::new(0.0, 0.3, 4.8), Vec3::new(0.2, 0.1, 0.0)), 0.02);
-    fills_outline(&scene.from(Vec3::new(-3.4, 1.7, 2.9), Vec3::new(0.6, 0.5, 0.0)), 0.02);
+    fills_outline(&scene.clone().from(Vec3::new(0.0, 0.3, 4.8), Vec3::new(0.2, 0.1, 0.0)), 0.035);
+    fills_outline(&scene.from(Vec3::new(-3.4, 1.7, 2.9), Vec3::new(0.6, 0.5, 0.0)), 0.035);
 }
 
 #[test]

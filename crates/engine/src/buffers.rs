@@ -12,7 +12,8 @@ pub struct Buffer {
 const STORAGE: wgpu::BufferUsages = wgpu::BufferUsages::STORAGE
     .union(wgpu::BufferUsages::COPY_SRC)
     .union(wgpu::BufferUsages::COPY_DST)
-    .union(wgpu::BufferUsages::VERTEX);
+    .union(wgpu::BufferUsages::VERTEX)
+    .union(wgpu::BufferUsages::INDIRECT);
 
 impl Buffer {
     /// A buffer of at least `bytes`, zeroed.

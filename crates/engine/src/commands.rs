@@ -2,6 +2,7 @@
 
 use crate::buffers::Buffer;
 use crate::kernel::{Kernel, WORKGROUP_SIZE};
+use crate::profile::Profile;
 use crate::records::Params;
 use crate::{Error, Gpu};
 
@@ -15,6 +16,8 @@ const CAPACITY: u64 = 512;
 pub struct Uniforms {
     step: wgpu::Buffer,
     dispatches: wgpu::Buffer,
+    /// The times of the kernels, if they are wanted.
+    pub(crate) profile: Option<Profile>,
 }
 
 impl Uniforms {
@@ -29,7 +32,17 @@ impl Uniforms {
             })
         };
         let step = create("surfine params", size_of::<Params>() as u64);
-        Self { step, dispatches: create("surfine dispatches", CAPACITY * STRIDE) }
+        let dispatches = create("surfine dispatches", CAPACITY * STRIDE);
+        Self { step, dispatches, profile: None }
+    }
+
+    /// Begins to take the times of kernels, or ends it.
+    ///
+    /// # Errors
+    /// The device has no timestamps.
+    pub(crate) fn set_profiling(&mut self, gpu: &Gpu, on: bool) -> Result<(), Error> {
+        self.profile = if on { Some(Profile::new(gpu, CAPACITY as u32)?) } else { None };
+        Ok(())
     }
 
     /// Sets the parameters of the following submissions.
@@ -51,15 +64,18 @@ pub struct Commands<'a> {
     gpu: &'a Gpu,
     uniforms: &'a Uniforms,
     encoder: wgpu::CommandEncoder,
-    /// Uniforms of the dispatches recorded so far.
+    /// Uniforms of the dispatches recorded so far, and their kernels.
     recorded: Vec<u8>,
+    kernels: Vec<&'static str>,
+    /// What went wrong in earlier submissions.
+    failure: Option<Error>,
 }
 
 impl<'a> Commands<'a> {
     /// Starts recording.
     pub fn new(gpu: &'a Gpu, uniforms: &'a Uniforms) -> Self {
         let encoder = gpu.device.create_command_encoder(&Default::default());
-        Self { gpu, uniforms, encoder, recorded: Vec::new() }
+        Self { gpu, uniforms, encoder, recorded: Vec::new(), kernels: Vec::new(), failure: None }
     }
 
     /// Binds storage buffers to a kernel, in the order of its bindings from 2 on.
@@ -89,21 +105,41 @@ impl<'a> Commands<'a> {
         if invocations == 0 {
             return;
         }
+        let groups = invocations.div_ceil(WORKGROUP_SIZE);
+        let row = groups.min(self.gpu.device.limits().max_compute_workgroups_per_dimension);
+        self.record(bound, words, |pass| pass.dispatch_workgroups(row, groups.div_ceil(row), 1));
+    }
+
+    /// Records a dispatch of as many workgroups as the first three words of a buffer say when it runs.
+    pub fn dispatch_indirect(&mut self, bound: &Bound<'_>, words: [u32; 4], groups: &Buffer) {
+        self.record(bound, words, |pass| pass.dispatch_workgroups_indirect(groups.raw(), 0));
+    }
+
+    fn record(
+        &mut self,
+        bound: &Bound<'_>,
+        words: [u32; 4],
+        dispatch: impl FnOnce(&mut wgpu::ComputePass<'_>),
+    ) {
         if self.recorded.len() as u64 == CAPACITY * STRIDE {
-            self.flush();
+            self.failure = self.flush().err().or(self.failure.take());
         }
         let offset = self.recorded.len() as u32;
         self.recorded.extend_from_slice(bytemuck::bytes_of(&words));
         self.recorded.resize(offset as usize + STRIDE as usize, 0);
-        let groups = invocations.div_ceil(WORKGROUP_SIZE);
-        let row = groups.min(self.gpu.device.limits().max_compute_workgroups_per_dimension);
         let mut pass = self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some(bound.kernel.name()),
-            timestamp_writes: None,
+            timestamp_writes: self
+                .uniforms
+                .profile
+                .as_ref()
+                .map(|profile| profile.writes(self.kernels.len() as u32)),
         });
         pass.set_pipeline(bound.kernel.pipeline());
         pass.set_bind_group(0, &bound.group, &[offset]);
-        pass.dispatch_workgroups(row, groups.div_ceil(row), 1);
+        dispatch(&mut pass);
+        drop(pass);
+        self.kernels.push(bound.kernel.name());
     }
 
     /// Records [`Commands::dispatch`] of a kernel that runs once with these buffers.
@@ -114,17 +150,28 @@ impl<'a> Commands<'a> {
 
     /// Records the zeroing of the first `words` words of a buffer.
     pub fn clear(&mut self, buffer: &Buffer, words: u64) {
-        self.encoder.clear_buffer(buffer.raw(), 0, Some(4 * words));
+        self.clear_range(buffer, 0, words);
     }
 
-    /// Submits what was recorded, without waiting.
-    pub fn flush(&mut self) {
+    /// Records the zeroing of `words` words from the word `first` on.
+    pub fn clear_range(&mut self, buffer: &Buffer, first: u64, words: u64) {
+        self.encoder.clear_buffer(buffer.raw(), 4 * first, Some(4 * words));
+    }
+
+    /// Submits what was recorded, without waiting unless kernels are timed.
+    fn flush(&mut self) -> Result<(), Error> {
         // Written before the submission runs and after the last one: the queue keeps the order.
         self.gpu.queue.write_buffer(&self.uniforms.dispatches, 0, &self.recorded);
         self.recorded.clear();
         let fresh = self.gpu.device.create_command_encoder(&Default::default());
-        let full = std::mem::replace(&mut self.encoder, fresh);
+        let mut full = std::mem::replace(&mut self.encoder, fresh);
+        let kernels = std::mem::take(&mut self.kernels);
+        let profile = self.uniforms.profile.as_ref().filter(|_| !kernels.is_empty());
+        if let Some(profile) = profile {
+            profile.resolve(&mut full, kernels.len() as u32);
+        }
         self.gpu.queue.submit([full.finish()]);
+        profile.map_or(Ok(()), |profile| profile.collect(self.gpu, &kernels))
     }
 
     /// Submits what was recorded and waits for it.
@@ -132,7 +179,7 @@ impl<'a> Commands<'a> {
     /// # Errors
     /// The device was lost or took too long.
     pub fn finish(mut self) -> Result<(), Error> {
-        self.flush();
-        self.gpu.wait()
+        self.flush()?;
+        self.failure.map_or_else(|| self.gpu.wait(), Err)
     }
 }

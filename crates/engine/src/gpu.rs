@@ -91,7 +91,8 @@ impl Gpu {
     /// # Errors
     /// The driver refuses.
     pub fn open(adapter: &wgpu::Adapter) -> Result<Self, Error> {
-        let features = adapter.features() & wgpu::Features::PASSTHROUGH_SHADERS;
+        let wanted = wgpu::Features::PASSTHROUGH_SHADERS | wgpu::Features::TIMESTAMP_QUERY;
+        let features = adapter.features() & wanted;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("surfine"),
             required_features: features,

@@ -49,7 +49,7 @@ impl Kernel {
                 label: Some(shader.name),
                 layout: Some(&pipeline_layout),
                 module: &compiled,
-                entry_point: Some(shader.name),
+                entry_point: Some(shader.entry),
                 compilation_options: wgpu::PipelineCompilationOptions {
                     // The exact text has them built in.
                     constants: if gpu.mode == Mode::Exact { &[] } else { &constants },
@@ -113,9 +113,9 @@ fn exact_module(
     module: &naga::Module,
     constants: &[(&str, f64)],
 ) -> Result<wgpu::ShaderModule, String> {
-    let words = exact_spirv(shader.name, module, constants)?;
+    let words = exact_spirv(shader.entry, module, constants)?;
     let entry_point = wgpu::PassthroughShaderEntryPoint {
-        name: shader.name.into(),
+        name: shader.entry.into(),
         workgroup_size: (WORKGROUP_SIZE, 1, 1),
     };
     // SAFETY: the words come from naga's writer, of a module that its validator accepted, with bounds checks on;
@@ -170,25 +170,32 @@ pub fn exact_spirv(
 /// Words of the SPIR-V header.
 const HEADER: usize = 5;
 
-/// Puts `OpDecorate id NoContraction` for every float operation before the first type.
+/// Puts `OpDecorate id NoContraction` for every float operation before the first type, and leaves private variables without
+/// their zeros: kernels write before they read, and software drivers take seconds to compile the zeros of a row.
 fn forbid_contraction(words: &[u32]) -> Vec<u32> {
     const OP_DECORATE: u32 = 71;
     const NO_CONTRACTION: u32 = 42;
-    let mut decorations = Vec::new();
-    let mut first_type = None;
+    const OP_VARIABLE: u32 = 59;
+    const PRIVATE: u32 = 6;
+    let (mut head, mut decorations, mut body) = (words[..HEADER].to_vec(), Vec::new(), Vec::new());
     let mut at = HEADER;
     while at < words.len() {
         let (opcode, length) = (words[at] & 0xffff, (words[at] >> 16) as usize);
-        // OpTypeVoid (19) to OpTypeForwardPointer (39).
-        if (19..=39).contains(&opcode) && first_type.is_none() {
-            first_type = Some(at);
-        }
+        let instruction = &words[at..at + length.max(1)];
         // OpExtInst, OpFNegate, OpFAdd, OpFSub, OpFMul, OpFDiv, OpFRem, OpFMod to OpDot.
         if matches!(opcode, 12 | 127 | 129 | 131 | 133 | 136 | 140..=148) {
-            decorations.extend([3 << 16 | OP_DECORATE, words[at + 2], NO_CONTRACTION]);
+            decorations.extend([3 << 16 | OP_DECORATE, instruction[2], NO_CONTRACTION]);
         }
-        at += length.max(1);
+        // OpTypeVoid (19) to OpTypeForwardPointer (39).
+        if body.is_empty() && !(19..=39).contains(&opcode) {
+            head.extend(instruction);
+        } else if opcode == OP_VARIABLE && instruction[3] == PRIVATE {
+            body.push(4 << 16 | OP_VARIABLE);
+            body.extend(&instruction[1..4]);
+        } else {
+            body.extend(instruction);
+        }
+        at += instruction.len();
     }
-    let at = first_type.unwrap_or(words.len());
-    [&words[..at], &decorations, &words[at..]].concat()
+    [head, decorations, body].concat()
 }

@@ -22,6 +22,7 @@ pub mod curves;
 mod error;
 mod gpu;
 mod kernel;
+mod profile;
 pub mod records;
 mod refiner;
 mod scan;
@@ -31,6 +32,7 @@ mod stages;
 pub use error::Error;
 pub use gpu::{Gpu, Mode, adapters, choose_adapter};
 pub use kernel::{Kernel, WORKGROUP_SIZE, exact_spirv};
+pub use profile::KernelTime;
 pub use refiner::{GpuRefined, Refiner};
 pub use surfine_points::{
     Attribute, Boundary, CurveCounts, LevelReport, Neighborhood, PointSet, Progress, RefineParams,

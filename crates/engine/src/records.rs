@@ -21,6 +21,30 @@ pub struct Point {
 /// Bits of a point's level; above them is its record.
 pub const LEVEL_BITS: u32 = 8;
 
+/// What belongs to a point of the level.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+#[expect(missing_docs, reason = "the fields are documented in records.wgsl")]
+pub struct Fan {
+    pub slots: [u32; 2],
+    pub near: f32,
+    pub left_over: u32,
+    pub around: [u32; 2],
+    pub conflicts: [u32; 2],
+}
+
+/// A possible new point.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+#[expect(missing_docs, reason = "the fields are documented in records.wgsl")]
+pub struct Candidate {
+    pub place: [f32; 4],
+    pub normal: [f32; 3],
+    pub state: u32,
+    pub corners: [u32; 3],
+    pub unused: u32,
+}
+
 /// What stays the same for all dispatches of one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -36,12 +60,15 @@ pub struct Params {
     pub lambda2: f32,
     pub points: u32,
     pub slots: u32,
+    pub triangles: u32,
+    pub candidates: u32,
     pub level: u32,
+    pub records: u32,
     pub arena_words: u32,
     pub ring_entries: u32,
-    pub conflict_entries: u32,
-    pub fan_slots: u32,
-    pub records: u32,
+    pub around_entries: u32,
+    pub mirror_links: u32,
+    pub unused: [u32; 2],
 }
 
 impl Params {
@@ -76,12 +103,14 @@ impl Params {
 pub struct Counters {
     pub arena: u32,
     pub arena_peak: u32,
-    pub conflicts: u32,
+    pub slots: u32,
+    pub around: u32,
     pub mirrored: u32,
-    pub uncolored: u32,
     pub classes: u32,
     pub isolated: u32,
     pub ball_low: u32,
     pub ball_high: u32,
+    pub left_over: u32,
+    pub longest_row: u32,
     pub cut_loops: u32,
 }

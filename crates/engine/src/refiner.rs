@@ -3,6 +3,7 @@
 use crate::buffers::{self, Buffer};
 use crate::commands::Uniforms;
 use crate::curves;
+use crate::profile::{KernelTime, Profile};
 use crate::records::{Counters, LEVEL_BITS, Params, Point};
 use crate::scan::Scan;
 use crate::stages::{Buffers, Constants, Kernels, Sizing, Step, constants};
@@ -12,8 +13,8 @@ use surfine_features::{
     Cloud, Features, Folded, Records, Refinement, check_marks, fold, may_be_boundary,
 };
 use surfine_points::{
-    Boundary, CurveCounts, Grid, GridShape, Invalid, LevelReport, PointSet, Progress, RefineParams,
-    Refined, Vec3, add_stage_time,
+    Boundary, CurveCounts, GridShape, Invalid, LevelReport, Ordered, PointSet, Progress,
+    RefineParams, Refined, Vec3, add_stage_time,
 };
 
 /// A device with compiled kernels and buffers, ready to refine one cloud after the other.
@@ -32,8 +33,8 @@ pub struct Refiner {
 #[derive(Debug)]
 pub struct GpuRefined {
     /// [`Point`](crate::records::Point)s of 32 bytes: position at offset 0, radius at 12, normal at 16, level in the byte at
-    /// 28. Usable as vertex or storage buffer and as copy source; it may be longer than [`GpuRefined::len`] points. A point
-    /// on a crease is one of these for each of its sides: those of further normals follow the input points, and the new
+    /// 28. Usable as vertex or storage buffer and as copy source; it may be longer than [`GpuRefined::len`] points. They are in the order of
+    /// `ordered`. A point on a crease is one of these for each of its sides: those of further normals follow the input points, and the new
     /// ones follow each other.
     pub points: wgpu::Buffer,
     /// The three corners of each new point's triangle, `u32` indices of points; entry 0 belongs to the first new point.
@@ -48,7 +49,10 @@ pub struct GpuRefined {
     pub curves: CurveCounts,
     /// Bytes of the refiner's buffers when the last step ended, the result included.
     pub device_bytes: u64,
-    /// The input with one record for each normal.
+    /// The input in the order of the device, with the index of each point in the caller's order: the refiner puts points that
+    /// are near each other next to each other.
+    pub ordered: Ordered,
+    /// The same with one record for each normal.
     records: Records,
     /// Creases and boundaries of the last level.
     features: Features,
@@ -121,6 +125,21 @@ impl Refiner {
         self.sizing = sizing;
     }
 
+    /// Begins to take the times of kernels on the device, or ends it. The host then waits for every submission, so whole runs
+    /// take a little longer.
+    ///
+    /// # Errors
+    /// The device was opened without `wgpu::Features::TIMESTAMP_QUERY`; [`Gpu::open`] asks for it where the adapter has it.
+    pub fn set_profiling(&mut self, on: bool) -> Result<(), Error> {
+        self.uniforms.set_profiling(&self.gpu, on)
+    }
+
+    /// The times of the kernels since the last call, in the order in which they first ran; empty unless
+    /// [`Refiner::set_profiling`] asked for them.
+    pub fn take_profile(&mut self) -> Vec<KernelTime> {
+        self.uniforms.profile.as_ref().map(Profile::take).unwrap_or_default()
+    }
+
     /// The device.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
@@ -178,7 +197,9 @@ impl Refiner {
         params: &RefineParams,
         progress: &mut dyn FnMut(Progress),
     ) -> Result<GpuRefined, Error> {
-        let records = Records::split(points)?;
+        let ordered = Ordered::new(points);
+        let points = &ordered.points;
+        let records = Records::split(points).map_err(|e| e.in_order(&ordered.order))?;
         let Records { positions, normals, radii, groups, .. } = &records;
         let mut features = Features::creases(Cloud { positions, normals, radii }, groups);
         self.upload(&records, &features)?;
@@ -196,7 +217,7 @@ impl Refiner {
                 Params { points: count as u32, level, ..Params::new(params).with_grid(&shape) };
             let mut rings = None;
             if level == 1 && params.boundary != Boundary::None {
-                let input = (&shape, points, &records);
+                let input = (points, &records);
                 rings = self.find_boundary(params, step, input, &mut features, &mut clock)?;
             }
             if level == 1 {
@@ -210,13 +231,11 @@ impl Refiner {
             if features.records.len() > MOST_RECORDS {
                 return Err(Invalid::TooMany(features.records.len()).into());
             }
-            let bytes = curves::upload(&self.gpu, &mut self.buffers.curves, &features, &new)?;
-            let input = (level == 1).then_some((&shape, &records));
+            curves::upload(&self.gpu, &mut self.buffers.curves, &features, &new)?;
             let (old, new_count) = (features.old as u32, new.len() as u32);
-            let on_curves = OnCurves { records: old, new: new_count, bytes };
+            let on_curves = OnCurves { records: old, new: new_count };
             let earlier = count - records.len();
-            let mut report =
-                self.run_step(params, step, input, rings, on_curves, earlier, &mut clock)?;
+            let mut report = self.run_step(params, step, rings, on_curves, earlier, &mut clock)?;
             report.stages = clock.stop();
             level_sizes.push(report.points_out);
             features.commit(report.points_out - new.len());
@@ -239,6 +258,7 @@ impl Refiner {
             reports,
             curves: counts,
             device_bytes,
+            ordered,
             records,
             features,
         })
@@ -266,7 +286,6 @@ impl Refiner {
             rules: refine.rules,
             params,
             curve_points: on_curves.new,
-            curve_bytes: on_curves.bytes,
         })
     }
 
@@ -275,15 +294,15 @@ impl Refiner {
         &mut self,
         refine: &RefineParams,
         params: Params,
-        (shape, points, records): (&GridShape, &PointSet, &Records),
+        (points, records): (&PointSet, &Records),
         features: &mut Features,
         clock: &mut Clock<'_>,
     ) -> Result<Option<Rings>, Error> {
-        let bytes = curves::upload(&self.gpu, &mut self.buffers.curves, features, &[])?;
-        let on_curves = OnCurves { records: features.old as u32, new: 0, bytes };
+        curves::upload(&self.gpu, &mut self.buffers.curves, features, &[])?;
+        let on_curves = OnCurves { records: features.old as u32, new: 0 };
         let mut step = self.step(refine, params, on_curves)?;
         clock.start("grid");
-        step.upload_grid(&grid_of(shape, records))?;
+        step.grid_points()?;
         clock.start("neighborhood");
         let counters = step.neighborhood()?;
         clock.start("boundary");
@@ -305,17 +324,11 @@ impl Refiner {
         Ok(None)
     }
 
-    /// Runs the stages of one refinement step. The grid of the `input` is built here, later levels make theirs. `rings` says
-    /// that they are there already.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "each is another thing that the loop over levels knows"
-    )]
+    /// Runs the stages of one refinement step. `rings` says that they are there already.
     fn run_step(
         &mut self,
         refine: &RefineParams,
         params: Params,
-        input: Option<(&GridShape, &Records)>,
         rings: Option<Rings>,
         on_curves: OnCurves,
         earlier: usize,
@@ -323,28 +336,24 @@ impl Refiner {
     ) -> Result<LevelReport, Error> {
         let mut step = self.step(refine, params, on_curves)?;
         let counters = if let Some(Rings { counters, slots }) = rings {
-            step.params.fan_slots = slots;
-            step.params.slots = slots + on_curves.new;
+            step.params.slots = slots;
             counters
         } else {
             clock.start("grid");
-            match input {
-                Some((shape, records)) => step.upload_grid(&grid_of(shape, records))?,
-                None => step.grid_points()?,
-            }
+            step.grid_points()?;
             clock.start("neighborhood");
             step.neighborhood()?
         };
         clock.start("candidates");
         step.candidates()?;
         clock.start("conflicts");
-        step.conflicts()?;
+        let left_over = step.conflicts()?.left_over;
         clock.start("coloring");
         let classes = step.coloring()?;
         clock.start("insertion");
-        let new = step.insertion(&classes)?;
+        let new = step.insertion(&classes, left_over)?;
         clock.start("next_ring");
-        step.next_ring()?;
+        step.next_ring(left_over)?;
         clock.start("commit");
         step.commit(new, earlier as u32)?;
         let Counters { ball_low, ball_high, isolated, .. } = counters;
@@ -352,7 +361,7 @@ impl Refiner {
             points_in: params.points as usize,
             points_out: params.points as usize + new as usize,
             ball_neighbors: u64::from(ball_high) << 32 | u64::from(ball_low),
-            ring_neighbors: u64::from(step.params.fan_slots),
+            ring_neighbors: u64::from(step.params.slots),
             classes: classes.len() - 1,
             isolated: isolated as usize,
             stages: Vec::new(),
@@ -390,7 +399,7 @@ impl Refiner {
         let points = buffers::read(&self.gpu, &result.points, bytes)?;
         let points: Vec<Point> = bytemuck::pod_collect_to_vec(&points);
         let GpuRefined { level_sizes, level_radii, reports, curves, device_bytes, .. } = result;
-        let (records, features) = (result.records, result.features);
+        let (ordered, records, features) = (result.ordered, result.records, result.features);
         let new = &points[records.len()..];
         let parents = buffers::read(&self.gpu, &result.parents, 12 * new.len() as u64)?;
         let refinement = Refinement {
@@ -401,34 +410,33 @@ impl Refiner {
             level_sizes,
             level_radii,
         };
-        let folded = fold(input, &records, &features, &refinement, params.boundary.property());
+        let folded =
+            fold(&ordered.points, &records, &features, &refinement, params.boundary.property());
         let mut reports = reports;
         folded.count_points(&mut reports);
         let Folded { points, parents, level_sizes, level_radii } = folded;
         let device_bytes = Some(device_bytes);
-        Ok(Refined { points, parents, level_sizes, level_radii, reports, curves, device_bytes })
+        let mut refined =
+            Refined { points, parents, level_sizes, level_radii, reports, curves, device_bytes };
+        ordered.restore(input, &mut refined);
+        Ok(refined)
     }
 }
 
 /// Records that fit beside the level in a word of a point.
 const MOST_RECORDS: usize = (1 << (32 - LEVEL_BITS)) - 2;
 
-/// How many records there are on creases and boundaries, how many new ones, and the bytes of their table.
+/// How many records there are on creases and boundaries, and how many new ones.
 #[derive(Clone, Copy)]
 struct OnCurves {
     records: u32,
     new: u32,
-    bytes: u64,
 }
 
 /// The rings of the first step.
 struct Rings {
     counters: Counters,
     slots: u32,
-}
-
-fn grid_of(shape: &GridShape, records: &Records) -> Grid {
-    Grid::build(*shape, (0..).zip(records.positions.iter().copied()))
 }
 
 /// Times the stages and tells the caller where the run stands.

@@ -3,8 +3,10 @@
 /// The source of a kernel.
 #[derive(Clone, Copy, Debug)]
 pub struct Shader {
-    /// Name of the kernel: stem of its file and name of its entry point.
+    /// Name of the kernel.
     pub name: &'static str,
+    /// Name of its entry point and stem of its file; the name too but for kernels that are there twice.
+    pub entry: &'static str,
     /// The kernel's own file first, so that line numbers in messages are its own, then the shared ones.
     pub files: &'static [&'static str],
 }
@@ -24,72 +26,106 @@ macro_rules! file {
 
 macro_rules! shader {
     ($name:literal $(, $shared:literal)*) => {
+        shader!($name = $name $(, $shared)*)
+    };
+    ($name:literal = $entry:literal $(, $shared:literal)*) => {
         Shader {
             name: $name,
-            files: &[file!($name), file!("shared/" "records") $(, file!("shared/" $shared))*],
+            entry: $entry,
+            files: &[file!($entry), file!("shared/" "records") $(, file!("shared/" $shared))*],
         }
     };
 }
 
+/// A kernel with private rows, and the same with rows in the arena for what these do not hold.
+macro_rules! with_rows {
+    ($name:literal, $large:literal $(, $shared:literal)*) => {
+        [
+            shader!($name, "rows", "rows_private" $(, $shared)*),
+            shader!($large = $name, "rows", "rows_arena" $(, $shared)*),
+        ]
+    };
+}
+
+const NEIGHBORHOOD: [Shader; 2] = with_rows!(
+    "neighborhood",
+    "neighborhood_large",
+    "ball",
+    "fuzzy_planes",
+    "natural",
+    "cells",
+    "ball_walk",
+    "math",
+    "pn_triangle",
+    "curves",
+    "segments",
+    "visible",
+    "cut_loops"
+);
+
+const CONFLICTS: [Shader; 2] = with_rows!(
+    "conflicts",
+    "conflicts_large",
+    "around",
+    "cells",
+    "ball_walk",
+    "math",
+    "same_side",
+    "curves",
+    "segments",
+    "visible",
+    "cut_loops"
+);
+
+const INSERTION: [Shader; 2] = with_rows!(
+    "insertion",
+    "insertion_large",
+    "new_ring",
+    "choice",
+    "discard",
+    "next_radii",
+    "math",
+    "pn_triangle",
+    "same_side",
+    "curves",
+    "cut_loops"
+);
+
+const NEXT_RING: [Shader; 2] = with_rows!(
+    "next_ring",
+    "next_ring_large",
+    "ahead",
+    "fuzzy_planes",
+    "math",
+    "pn_triangle",
+    "curves",
+    "cut_loops"
+);
+
 /// All kernels, in the order of the stages.
 pub const SHADERS: &[Shader] = &[
-    shader!("grid_points", "cells"),
-    shader!("grid_candidates", "cells"),
-    shader!("sort_fill"),
+    shader!("grid_count", "cells"),
+    shader!("grid_fill"),
     shader!("scan_sum"),
     shader!("scan_add"),
-    shader!(
-        "neighborhood_ball",
-        "cells",
-        "ball_walk",
-        "math",
-        "pn_triangle",
-        "curves",
-        "segments",
-        "visible",
-        "cut_loops"
-    ),
-    shader!("neighborhood_badness", "math", "fuzzy_planes", "cut_loops"),
-    shader!("neighborhood_natural", "math", "cut_loops"),
-    shader!("neighborhood_ring", "math", "cut_loops"),
-    shader!("neighborhood_store"),
+    NEIGHBORHOOD[0],
+    NEIGHBORHOOD[1],
     shader!("boundary_gaps", "math"),
-    shader!("candidates", "math", "pn_triangle", "new_normal", "curves", "fan_triangle"),
-    shader!("conflicts", "cells", "ball_walk", "math", "near", "cut_loops"),
+    shader!("candidates_home", "math", "curves", "fan_triangle"),
+    shader!("candidates_number", "math", "curves", "fan_triangle"),
+    shader!("candidates_link"),
+    shader!("candidates", "math", "pn_triangle", "corners", "new_normal", "curves"),
+    CONFLICTS[0],
+    CONFLICTS[1],
     shader!("conflicts_mirror", "cut_loops"),
+    shader!("coloring_round"),
     shader!("coloring", "cut_loops"),
     shader!("class_count"),
-    shader!(
-        "insertion",
-        "cells",
-        "ball_walk",
-        "math",
-        "pn_triangle",
-        "near",
-        "same_side",
-        "curves",
-        "segments",
-        "visible",
-        "new_ring",
-        "choice",
-        "discard",
-        "next_radii",
-        "cut_loops"
-    ),
-    shader!(
-        "next_ring",
-        "cells",
-        "ball_walk",
-        "math",
-        "pn_triangle",
-        "fuzzy_planes",
-        "same_side",
-        "curves",
-        "segments",
-        "visible",
-        "ahead",
-        "cut_loops"
-    ),
+    shader!("sort_fill"),
+    INSERTION[0],
+    INSERTION[1],
+    NEXT_RING[0],
+    NEXT_RING[1],
     shader!("commit_count"),
-    shader!("commit", "math", "pn_triangle", "new_normal", "curves", "fan_triangle"),
+    shader!("commit", "math", "pn_triangle", "corners", "new_normal", "curves"),
 ];

@@ -6,22 +6,22 @@
 use crate::buffers::{Buffer, read_parts};
 use crate::commands::{Commands, Uniforms};
 use crate::kernel::Kernel;
-use crate::records::{Counters, Params, Point};
+use crate::records::{Candidate, Counters, Fan, Params, Point};
 use crate::scan::Scan;
 use crate::shaders::SHADERS;
 use crate::{Error, Gpu};
 use surfine_features::Gap;
-use surfine_points::{Grid, Neighborhood, RefineParams, Rules};
+use surfine_points::{Neighborhood, RefineParams, Rules};
 
 /// Rounds of colouring between two looks at what is left.
-const ROUNDS: u32 = 16;
+const ROUNDS: u32 = 24;
 /// Bytes of a word.
 const WORD: u64 = 4;
 
 /// How much is done and provided for at once. No result depends on it.
 #[derive(Clone, Copy, Debug)]
 pub struct Sizing {
-    /// Points whose neighbourhoods are computed together: their scratch memory is used again for the next ones.
+    /// Points that share the arena: those after them use it again.
     pub chunk: u32,
     /// Points of a class that are refined together.
     pub part: u32,
@@ -90,28 +90,32 @@ macro_rules! buffers {
 buffers! {
     points: "points",
     parents: "parents",
-    /// Starts of cells, then entries: of the points, later of the candidates.
-    grid: "grid entries",
+    /// First entry of each cell: of the points, later of the candidates.
+    grid: "grid cells",
+    /// The entries.
+    places: "grid entries",
     /// Cell and rank of each item of a counting sort.
     cells: "cells",
-    ring_starts: "ring starts",
+    fans: "fans",
     ring_entries: "ring entries",
-    /// Arena block of each point.
-    blocks: "arena blocks",
-    /// Scratch memory of neighborhood and insertion.
-    arena: "neighbours",
-    candidate_positions: "candidate positions",
-    candidate_normals: "candidate normals",
-    owners: "candidate owners",
-    states: "candidate states",
-    conflict_blocks: "conflict blocks",
-    conflict_entries: "conflicts",
+    /// The candidate of each slot.
+    of_slot: "candidates of slots",
+    numbers: "numbers of candidates",
+    first_candidates: "first candidates",
+    candidates: "candidates",
+    /// Lists of candidates around points and of conflicts.
+    around: "candidates around points",
     mirror_heads: "mirrored conflict heads",
     mirror_links: "mirrored conflicts",
     classes: "classes",
+    waiting: "points without a class",
+    rounds: "numbers of points without a class",
+    workgroups: "workgroups",
     class_members: "class members",
     next_radii: "radii",
     new_indices: "new indices",
+    /// Scratch memory of points with many neighbours.
+    arena: "long rows",
     counters: "counters",
     /// Creases and boundaries.
     curves: "curves",
@@ -132,9 +136,17 @@ pub(crate) struct Step<'a> {
     pub(crate) params: Params,
     /// New points that this step puts on creases and boundaries.
     pub(crate) curve_points: u32,
-    /// Bytes of the table of creases and boundaries: its buffer may be larger.
-    pub(crate) curve_bytes: u64,
 }
+
+/// Words of four from one item to the next of those that are sorted by cell.
+const POINT_STRIDE: u32 = 2;
+const CANDIDATE_STRIDE: u32 = 3;
+
+// Bits of `Counters::left_over`: the kernels that leave points to their variant with rows in the arena.
+const NEIGHBORHOOD: u32 = 1;
+const CONFLICTS: u32 = 2;
+const INSERTION: u32 = 4;
+const NEXT_RING: u32 = 8;
 
 impl Step<'_> {
     fn commands(&self) -> Commands<'_> {
@@ -156,18 +168,18 @@ impl Step<'_> {
         let (counters, words) = bytes.split_at(size as usize);
         let counters: Counters = bytemuck::pod_read_unaligned(counters);
         if counters.cut_loops > 0 {
-            return Err(self.crowded(counters.cut_loops as usize - 1));
+            return Err(self.crowded(counters.cut_loops as usize - 1, counters.longest_row));
         }
         Ok((counters, bytemuck::pod_collect_to_vec(words)))
     }
 
+    /// Reads the counters alone.
+    fn counters(&self) -> Result<Counters, Error> {
+        Ok(self.read(&[])?.0)
+    }
+
     /// The error that names a point whose neighbours are too many.
-    fn crowded(&self, point: usize) -> Error {
-        let members = [(self.buffers.blocks.raw(), 8 * point as u64 + 4, WORD)];
-        let neighbors = match read_parts(self.gpu, &members) {
-            Ok(bytes) => bytemuck::pod_read_unaligned(&bytes),
-            Err(e) => return e,
-        };
+    fn crowded(&self, point: usize, neighbors: u32) -> Error {
         Error::Crowded {
             point,
             neighbors,
@@ -180,126 +192,108 @@ impl Step<'_> {
         1 << self.params.bits.iter().sum::<u32>()
     }
 
-    /// `grid` of the input: built on the host.
-    pub(crate) fn upload_grid(&mut self, grid: &Grid) -> Result<(), Error> {
-        let words = [grid.starts.as_slice(), &grid.items].concat();
-        self.buffers.grid.reserve(self.gpu, WORD * words.len() as u64)?;
-        let raw = self.buffers.grid.raw();
-        self.gpu.queue.write_buffer(raw, 0, bytemuck::cast_slice(&words));
-        Ok(())
-    }
-
-    /// `grid` of the points of later levels.
+    /// `grid` of the points.
     pub(crate) fn grid_points(&mut self) -> Result<(), Error> {
-        self.sort_into_grid("grid_points", self.params.points)
+        self.sort_into_grid(self.params.points, POINT_STRIDE)
     }
 
     /// Sorts points or candidates by cell.
-    fn sort_into_grid(&mut self, kernel: &str, items: u32) -> Result<(), Error> {
+    fn sort_into_grid(&mut self, items: u32, stride: u32) -> Result<(), Error> {
         let cells = self.cells();
-        let words = u64::from(cells) + 1 + u64::from(items);
-        self.buffers.grid.reserve(self.gpu, WORD * words)?;
+        self.buffers.grid.reserve(self.gpu, WORD * (u64::from(cells) + 1))?;
+        self.buffers.places.reserve(self.gpu, 4 * WORD * u64::from(items))?;
         self.buffers.cells.reserve(self.gpu, 2 * WORD * u64::from(items))?;
         self.scan.reserve(self.gpu, cells + 1)?;
         let b = &*self.buffers;
-        let from = if kernel == "grid_points" { &b.points } else { &b.candidate_positions };
+        let from = if stride == POINT_STRIDE { &b.points } else { &b.candidates };
+        let words = [items, stride, 0, 0];
         let mut commands = self.commands();
         commands.clear(&b.grid, u64::from(cells) + 1);
-        commands.run(self.kernels.get(kernel), &[from, &b.grid, &b.cells], [0; 4], items);
+        commands.run(self.kernels.get("grid_count"), &[from, &b.grid, &b.cells], words, items);
         self.record_scan(&mut commands, &b.grid, 0, cells + 1);
-        let fill = self.kernels.get("sort_fill");
-        commands.run(fill, &[&b.cells, &b.grid], [items, cells, 0, 0], items);
+        let fill = self.kernels.get("grid_fill");
+        commands.run(fill, &[from, &b.cells, &b.grid, &b.places], words, items);
         commands.finish()
     }
 
-    /// Copies the table of curves behind the candidates' grid: the kernels that read both have no binding left for it.
-    fn append_curves(&mut self) -> Result<(), Error> {
-        if self.params.records == 0 {
-            return Ok(());
-        }
-        let at = WORD * (u64::from(self.cells()) + 1 + u64::from(self.params.slots));
-        let bytes = self.curve_bytes;
-        self.buffers.grid.grow(self.gpu, at + bytes, at)?;
-        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        let (curves, grid) = (self.buffers.curves.raw(), self.buffers.grid.raw());
-        encoder.copy_buffer_to_buffer(curves, 0, grid, at, bytes);
-        self.gpu.queue.submit([encoder.finish()]);
-        Ok(())
-    }
-
-    /// `neighborhood`: the rings. Returns the counters.
-    pub(crate) fn neighborhood(&mut self) -> Result<Counters, Error> {
+    /// Runs the variant of a kernel with rows in the arena for what was left over, in parts that fit there.
+    fn run_large(
+        &mut self,
+        kernel: &str,
+        buffers: fn(&Buffers) -> Vec<&Buffer>,
+    ) -> Result<Counters, Error> {
         let n = self.params.points;
         let mut chunk = n.clamp(1, self.sizing.chunk);
-        self.buffers.blocks.reserve(self.gpu, 2 * WORD * u64::from(n))?;
-        self.buffers.ring_starts.reserve(self.gpu, WORD * (u64::from(n) + 1))?;
-        let entries = u64::from(self.sizing.entries);
-        self.buffers.ring_entries.reserve(self.gpu, 2 * WORD * entries.min(7) * u64::from(n))?;
-        self.buffers.arena.reserve(self.gpu, 4 * WORD * entries * u64::from(chunk))?;
-        self.scan.reserve(self.gpu, n + 1)?;
         loop {
             self.params.arena_words = words_of(&self.buffers.arena);
-            self.params.ring_entries = words_of(&self.buffers.ring_entries) / 2;
-            self.record_neighborhood(chunk)?;
-            let (counters, totals) = self.read(&[(&self.buffers.ring_starts, n)])?;
-            let enough = self.make_room_in_arena(&counters, &mut chunk)?;
-            if enough && totals[0] <= self.params.ring_entries {
-                self.params.fan_slots = totals[0];
-                self.params.slots = totals[0] + self.curve_points;
+            let mut commands = self.commands();
+            commands.clear_range(&self.buffers.counters, 0, 2);
+            let bound = commands.bind(self.kernels.get(kernel), &buffers(self.buffers));
+            for first in (0..n).step_by(chunk as usize) {
+                let count = chunk.min(n - first);
+                commands.clear_range(&self.buffers.counters, 0, 1);
+                commands.dispatch(&bound, [first, count, 0, 0], count);
+            }
+            commands.finish()?;
+            let counters = self.counters()?;
+            if self.make_room_in_arena(&counters, &mut chunk)? {
                 return Ok(counters);
             }
-            self.buffers.ring_entries.reserve(self.gpu, 2 * WORD * u64::from(totals[0]))?;
         }
     }
 
-    fn record_neighborhood(&self, chunk: u32) -> Result<(), Error> {
-        let b = &*self.buffers;
-        let n = self.params.points;
-        let mut commands = self.commands();
-        commands.clear(&b.counters, words_of(&b.counters).into());
-        commands.clear(&b.ring_starts, 1);
-        let k = self.kernels;
-        let ball = [&b.points, &b.grid, &b.arena, &b.blocks, &b.counters, &b.curves];
-        let ball = commands.bind(k.get("neighborhood_ball"), &ball);
-        let badness = [&b.points, &b.blocks, &b.arena, &b.counters];
-        let badness = commands.bind(k.get("neighborhood_badness"), &badness);
-        let natural = [&b.blocks, &b.arena, &b.counters];
-        let natural = commands.bind(k.get("neighborhood_natural"), &natural);
-        let ring = [&b.blocks, &b.arena, &b.ring_starts, &b.counters];
-        let ring = commands.bind(k.get("neighborhood_ring"), &ring);
-        let store = [&b.arena, &b.blocks, &b.ring_starts, &b.ring_entries];
-        let store = commands.bind(k.get("neighborhood_store"), &store);
-        for first in (0..n).step_by(chunk as usize) {
-            let count = chunk.min(n - first);
-            commands.clear(&b.counters, 1);
-            let words = [first, count, 0, 0];
-            commands.dispatch(&ball, words, count);
-            commands.dispatch(&badness, words, self.params.arena_words / 4);
-            if self.rules.natural_neighbors {
-                commands.dispatch(&natural, words, self.params.arena_words / 4);
-            }
-            commands.dispatch(&ring, words, count);
-            self.record_scan(&mut commands, &b.ring_starts, first, count + 1);
-            commands.dispatch(&store, words, count);
-        }
-        commands.finish()
-    }
-
-    /// Whether the arena sufficed; else makes it larger, or `chunk` smaller where the adapter allows no larger one.
-    fn make_room_in_arena(&mut self, counters: &Counters, chunk: &mut u32) -> Result<bool, Error> {
+    /// Whether the arena sufficed; else makes it larger, or `part` smaller where the adapter allows no larger one.
+    fn make_room_in_arena(&mut self, counters: &Counters, part: &mut u32) -> Result<bool, Error> {
         if counters.arena_peak <= self.params.arena_words {
             return Ok(true);
         }
         let need = WORD * u64::from(counters.arena_peak);
         if need <= self.gpu.largest_binding() {
             self.buffers.arena.reserve(self.gpu, need)?;
-        } else if *chunk > 1 {
-            *chunk = chunk.div_ceil(2);
+        } else if *part > 1 {
+            *part = part.div_ceil(2);
         } else {
             let (what, have) = ("neighbours of one point", self.gpu.largest_binding());
             return Err(Error::Limit { what, need, have, adapter: self.gpu.name.clone() });
         }
         Ok(false)
+    }
+
+    /// `neighborhood`: the rings. Returns the counters.
+    pub(crate) fn neighborhood(&mut self) -> Result<Counters, Error> {
+        fn buffers(b: &Buffers) -> Vec<&Buffer> {
+            vec![
+                &b.points,
+                &b.grid,
+                &b.places,
+                &b.fans,
+                &b.ring_entries,
+                &b.arena,
+                &b.counters,
+                &b.curves,
+            ]
+        }
+        let n = self.params.points;
+        self.buffers.fans.reserve(self.gpu, size_of::<Fan>() as u64 * u64::from(n))?;
+        let entries = u64::from(self.sizing.entries.min(7)) * u64::from(n);
+        self.buffers.ring_entries.reserve(self.gpu, 2 * WORD * entries)?;
+        loop {
+            self.params.ring_entries = words_of(&self.buffers.ring_entries) / 2;
+            let mut commands = self.commands();
+            commands.clear(&self.buffers.counters, words_of(&self.buffers.counters).into());
+            let kernel = self.kernels.get("neighborhood");
+            commands.run(kernel, &buffers(self.buffers), [0, n, 0, 0], n);
+            commands.finish()?;
+            let mut counters = self.counters()?;
+            if counters.left_over & NEIGHBORHOOD != 0 {
+                counters = self.run_large("neighborhood_large", buffers)?;
+            }
+            if counters.slots <= self.params.ring_entries {
+                self.params.slots = counters.slots;
+                return Ok(counters);
+            }
+            self.buffers.ring_entries.reserve(self.gpu, 2 * WORD * u64::from(counters.slots))?;
+        }
     }
 
     /// The widest gaps of the rings (section 6), of those wider than an angle in radians, by point.
@@ -312,7 +306,7 @@ impl Step<'_> {
             let room = words_of(&b.gaps) / 4;
             let mut commands = self.commands();
             commands.clear(&b.gap_count, 1);
-            let buffers = [&b.ring_starts, &b.ring_entries, &b.gaps, &b.gap_count];
+            let buffers = [&b.fans, &b.ring_entries, &b.gaps, &b.gap_count];
             let words = [theta_b.to_bits(), room, 0, 0];
             let kernel = self.kernels.get("boundary_gaps");
             commands.run(kernel, &buffers, words, self.params.points);
@@ -342,102 +336,131 @@ impl Step<'_> {
 
     /// `candidates` of all fans.
     pub(crate) fn candidates(&mut self) -> Result<(), Error> {
-        let slots = u64::from(self.params.slots);
-        self.buffers.candidate_positions.reserve(self.gpu, 4 * WORD * slots)?;
-        self.buffers.candidate_normals.reserve(self.gpu, 4 * WORD * slots)?;
-        self.buffers.owners.reserve(self.gpu, WORD * slots)?;
-        self.buffers.states.reserve(self.gpu, WORD * slots)?;
-        let mut commands = self.commands();
+        let (n, slots) = (self.params.points, self.params.slots);
+        self.buffers.of_slot.reserve(self.gpu, WORD * u64::from(slots))?;
+        self.buffers.numbers.reserve(self.gpu, WORD * u64::from(slots))?;
+        self.buffers.first_candidates.reserve(self.gpu, WORD * (u64::from(n) + 1))?;
+        self.scan.reserve(self.gpu, n + 1)?;
         let b = &*self.buffers;
-        let inputs = [&b.points, &b.ring_starts, &b.ring_entries];
-        let outputs =
-            [&b.candidate_positions, &b.candidate_normals, &b.owners, &b.states, &b.curves];
-        let kernel = self.kernels.get("candidates");
-        let invocations = self.params.points.max(self.curve_points);
-        commands.run(kernel, &[&inputs[..], &outputs].concat(), [0; 4], invocations);
+        let mut commands = self.commands();
+        commands.clear(&b.first_candidates, 1);
+        let buffers =
+            [&b.points, &b.fans, &b.ring_entries, &b.of_slot, &b.first_candidates, &b.curves];
+        commands.run(self.kernels.get("candidates_home"), &buffers, [0; 4], n);
+        self.record_scan(&mut commands, &b.first_candidates, 0, n + 1);
+        commands.finish()?;
+        let (_, totals) = self.read(&[(&b.first_candidates, n)])?;
+        self.params.triangles = totals[0];
+        self.params.candidates = totals[0] + self.curve_points;
+        let bytes = size_of::<Candidate>() as u64 * u64::from(self.params.candidates);
+        self.buffers.candidates.reserve(self.gpu, bytes)?;
+        let b = &*self.buffers;
+        let mut commands = self.commands();
+        let inputs = [&b.points, &b.fans, &b.ring_entries, &b.of_slot, &b.first_candidates];
+        let outputs = [&b.numbers, &b.candidates, &b.curves];
+        let kernel = self.kernels.get("candidates_number");
+        commands.run(kernel, &[&inputs[..], &outputs].concat(), [0; 4], n);
+        let link = self.kernels.get("candidates_link");
+        commands.run(link, &[&b.numbers, &b.of_slot], [0; 4], slots);
+        self.record_candidates(&mut commands);
         commands.finish()
     }
 
-    /// `conflicts`: the candidates by cell, then the conflict graph.
-    pub(crate) fn conflicts(&mut self) -> Result<(), Error> {
-        self.sort_into_grid("grid_candidates", self.params.slots)?;
-        self.append_curves()?;
-        let n = u64::from(self.params.points);
-        self.buffers.conflict_blocks.reserve(self.gpu, 2 * WORD * n)?;
-        self.buffers.mirror_heads.reserve(self.gpu, WORD * n)?;
-        let entries = u64::from(self.sizing.entries);
-        self.buffers.conflict_entries.reserve(self.gpu, WORD * entries / 2 * n)?;
-        self.buffers.mirror_links.reserve(self.gpu, 2 * WORD * entries / 12 * n)?;
-        loop {
-            self.params.conflict_entries = words_of(&self.buffers.conflict_entries);
-            self.record_conflicts()?;
-            let (counters, _) = self.read(&[])?;
-            let links = words_of(&self.buffers.mirror_links) / 2;
-            if counters.conflicts <= self.params.conflict_entries && counters.mirrored <= links {
-                return Ok(());
-            }
-            let (entries, links) = (u64::from(counters.conflicts), u64::from(counters.mirrored));
-            self.buffers.conflict_entries.reserve(self.gpu, WORD * entries)?;
-            self.buffers.mirror_links.reserve(self.gpu, 2 * WORD * links)?;
+    fn record_candidates(&self, commands: &mut Commands<'_>) {
+        let b = &*self.buffers;
+        let buffers = [&b.points, &b.candidates, &b.curves];
+        commands.run(self.kernels.get("candidates"), &buffers, [0; 4], self.params.candidates);
+    }
+
+    /// `conflicts`: the candidates by cell, then what is around each point, and the conflict graph.
+    pub(crate) fn conflicts(&mut self) -> Result<Counters, Error> {
+        fn buffers(b: &Buffers) -> Vec<&Buffer> {
+            let inputs = [&b.points, &b.fans, &b.of_slot, &b.candidates, &b.grid, &b.places];
+            [&inputs[..], &[&b.around, &b.arena, &b.counters, &b.curves]].concat()
         }
-    }
-
-    fn record_conflicts(&self) -> Result<(), Error> {
-        let b = &*self.buffers;
+        self.sort_into_grid(self.params.candidates, CANDIDATE_STRIDE)?;
         let n = self.params.points;
-        let mut commands = self.commands();
-        commands.clear(&b.counters, words_of(&b.counters).into());
-        commands.clear(&b.mirror_heads, n.into());
-        let inputs = [
-            &b.points,
-            &b.ring_starts,
-            &b.candidate_positions,
-            &b.candidate_normals,
-            &b.owners,
-            &b.grid,
-        ];
-        let lists = [&b.conflict_blocks, &b.conflict_entries];
-        let kernel = self.kernels.get("conflicts");
-        commands.run(kernel, &[&inputs[..], &lists, &[&b.counters]].concat(), [0; 4], n);
-        let links = [&b.mirror_heads, &b.mirror_links, &b.counters];
-        let kernel = self.kernels.get("conflicts_mirror");
-        commands.run(kernel, &[&lists[..], &links].concat(), [0; 4], n);
-        commands.finish()
+        let entries = 4 * u64::from(self.sizing.entries) / 3 * u64::from(n);
+        self.buffers.around.reserve(self.gpu, WORD * entries)?;
+        loop {
+            self.params.around_entries = words_of(&self.buffers.around);
+            let mut commands = self.commands();
+            commands.clear(&self.buffers.counters, words_of(&self.buffers.counters).into());
+            let kernel = self.kernels.get("conflicts");
+            commands.run(kernel, &buffers(self.buffers), [0, n, 0, 0], n);
+            commands.finish()?;
+            let mut counters = self.counters()?;
+            if counters.left_over & CONFLICTS != 0 {
+                counters = self.run_large("conflicts_large", buffers)?;
+            }
+            if counters.around <= self.params.around_entries {
+                return Ok(counters);
+            }
+            self.buffers.around.reserve(self.gpu, WORD * u64::from(counters.around))?;
+        }
     }
 
     /// `coloring`: the classes, and the points by class. Returns the first member of each class and the end.
     pub(crate) fn coloring(&mut self) -> Result<Vec<u32>, Error> {
         let n = self.params.points;
         self.buffers.classes.reserve(self.gpu, WORD * u64::from(n))?;
-        let mut commands = self.commands();
-        commands.clear(&self.buffers.classes, n.into());
-        commands.finish()?;
-        let classes = loop {
-            self.record_rounds()?;
-            let (counters, _) = self.read(&[])?;
-            if counters.uncolored == 0 {
-                break counters.classes;
+        self.buffers.mirror_heads.reserve(self.gpu, WORD * u64::from(n))?;
+        self.buffers.waiting.reserve(self.gpu, 2 * WORD * u64::from(n))?;
+        self.buffers.rounds.reserve(self.gpu, 2 * WORD)?;
+        self.buffers.workgroups.reserve(self.gpu, 3 * WORD)?;
+        let links = u64::from(self.sizing.entries) / 12 * u64::from(n);
+        self.buffers.mirror_links.reserve(self.gpu, 2 * WORD * links)?;
+        loop {
+            self.params.mirror_links = words_of(&self.buffers.mirror_links) / 2;
+            self.record_mirror()?;
+            let (mut counters, mut left) = self.run_rounds(0)?;
+            let links = counters.mirrored;
+            if links > self.params.mirror_links {
+                self.buffers.mirror_links.reserve(self.gpu, 2 * WORD * u64::from(links))?;
+                continue;
             }
-        };
-        self.sort_by_class(classes)?;
-        let bytes = WORD * (u64::from(classes) + 1);
-        let starts = read_parts(self.gpu, &[(self.buffers.class_members.raw(), 0, bytes)])?;
-        Ok(bytemuck::pod_collect_to_vec(&starts))
+            let mut round = ROUNDS;
+            while left > 0 {
+                (counters, left) = self.run_rounds(round)?;
+                round += ROUNDS;
+            }
+            self.sort_by_class(counters.classes)?;
+            let bytes = WORD * (u64::from(counters.classes) + 1);
+            let starts = read_parts(self.gpu, &[(self.buffers.class_members.raw(), 0, bytes)])?;
+            return Ok(bytemuck::pod_collect_to_vec(&starts));
+        }
     }
 
-    fn record_rounds(&self) -> Result<(), Error> {
+    fn record_mirror(&self) -> Result<(), Error> {
         let b = &*self.buffers;
         let n = self.params.points;
         let mut commands = self.commands();
-        // The number of classes is a maximum over all rounds, but a point has its class from one round only.
-        commands.clear(&b.counters, 5);
-        let graph = [&b.conflict_blocks, &b.conflict_entries, &b.mirror_heads, &b.mirror_links];
-        let kernel = self.kernels.get("coloring");
-        let round = commands.bind(kernel, &[&graph[..], &[&b.classes, &b.counters]].concat());
-        for i in 1..=ROUNDS {
-            commands.dispatch(&round, [u32::from(i == ROUNDS), 0, 0, 0], n);
-        }
+        commands.clear(&b.counters, words_of(&b.counters).into());
+        commands.clear(&b.mirror_heads, n.into());
+        commands.clear(&b.classes, n.into());
+        let buffers = [&b.fans, &b.around, &b.mirror_heads, &b.mirror_links, &b.counters];
+        commands.run(self.kernels.get("conflicts_mirror"), &buffers, [0; 4], n);
         commands.finish()
+    }
+
+    /// Some rounds of colouring, from that number on. Returns the counters and how many points are left.
+    fn run_rounds(&self, first: u32) -> Result<(Counters, u32), Error> {
+        let b = &*self.buffers;
+        let mut commands = self.commands();
+        let graph = [&b.fans, &b.around, &b.mirror_heads, &b.mirror_links];
+        let state = [&b.classes, &b.waiting, &b.rounds, &b.counters];
+        let round = commands.bind(self.kernels.get("coloring"), &[&graph[..], &state].concat());
+        let prepare =
+            commands.bind(self.kernels.get("coloring_round"), &[&b.rounds, &b.workgroups]);
+        let row = self.gpu.device.limits().max_compute_workgroups_per_dimension;
+        for i in first..first + ROUNDS {
+            commands.dispatch(&prepare, [i, row, 0, 0], 1);
+            commands.dispatch_indirect(&round, [i, 0, 0, 0], &b.workgroups);
+        }
+        commands.finish()?;
+        // Who waits after the last round waits for the next one.
+        let (counters, waiting) = self.read(&[(&b.rounds, (first + ROUNDS) % 2)])?;
+        Ok((counters, waiting[0]))
     }
 
     fn sort_by_class(&mut self, classes: u32) -> Result<(), Error> {
@@ -457,87 +480,78 @@ impl Step<'_> {
         commands.finish()
     }
 
-    /// `insertion`, class by class. `starts` is what [`Step::coloring`] returned. Returns the number of new points.
-    pub(crate) fn insertion(&mut self, starts: &[u32]) -> Result<u32, Error> {
-        let (n, slots) = (u64::from(self.params.points), u64::from(self.params.slots));
-        self.buffers.next_radii.reserve(self.gpu, 2 * WORD * (n + slots))?;
-        self.buffers.new_indices.reserve(self.gpu, WORD * (slots + 1))?;
-        self.scan.reserve(self.gpu, self.params.slots + 1)?;
+    /// `insertion`, class by class. `starts` is what [`Step::coloring`] returned, `left_over` what [`Step::conflicts`] did.
+    /// Returns the number of new points.
+    pub(crate) fn insertion(&mut self, starts: &[u32], left_over: u32) -> Result<u32, Error> {
+        let (n, candidates) = (u64::from(self.params.points), u64::from(self.params.candidates));
+        self.buffers.next_radii.reserve(self.gpu, 2 * WORD * (n + candidates))?;
+        self.buffers.new_indices.reserve(self.gpu, WORD * (candidates + 1))?;
+        self.scan.reserve(self.gpu, self.params.candidates + 1)?;
         let largest = starts.windows(2).map(|bounds| bounds[1] - bounds[0]).max().unwrap_or(1);
         let mut part = largest.clamp(1, self.sizing.part);
         loop {
             self.params.arena_words = words_of(&self.buffers.arena);
-            self.record_insertion(starts, part)?;
-            let (counters, totals) =
-                self.read(&[(&self.buffers.new_indices, self.params.slots)])?;
+            self.record_insertion(starts, part, left_over & INSERTION != 0)?;
+            let last = self.params.candidates;
+            let (counters, totals) = self.read(&[(&self.buffers.new_indices, last)])?;
             if self.make_room_in_arena(&counters, &mut part)? {
                 return Ok(totals[0]);
             }
             // The run that lacked memory has left marks on the candidates.
-            self.candidates()?;
+            let mut commands = self.commands();
+            self.record_candidates(&mut commands);
+            commands.finish()?;
         }
     }
 
-    fn record_insertion(&self, starts: &[u32], part: u32) -> Result<(), Error> {
+    fn record_insertion(&self, starts: &[u32], part: u32, has_large: bool) -> Result<(), Error> {
         let b = &*self.buffers;
-        let Params { points, slots, .. } = self.params;
+        let Params { points, candidates, .. } = self.params;
         let mut commands = self.commands();
         commands.clear(&b.counters, words_of(&b.counters).into());
-        commands.clear(&b.next_radii, 2 * (u64::from(points) + u64::from(slots)));
-        let inputs = [&b.points, &b.ring_starts, &b.candidate_positions, &b.candidate_normals];
-        let lists = [&b.grid, &b.class_members];
-        let outputs = [&b.states, &b.next_radii, &b.arena, &b.counters];
-        let kernel = self.kernels.get("insertion");
-        let insertion = commands.bind(kernel, &[&inputs[..], &lists, &outputs].concat());
+        commands.clear(&b.next_radii, 2 * (u64::from(points) + u64::from(candidates)));
+        let inputs = [&b.points, &b.fans, &b.of_slot, &b.candidates, &b.around, &b.class_members];
+        let outputs = [&b.next_radii, &b.arena, &b.counters, &b.curves];
+        let buffers = [&inputs[..], &outputs].concat();
+        let insertion = commands.bind(self.kernels.get("insertion"), &buffers);
+        let large = has_large.then(|| commands.bind(self.kernels.get("insertion_large"), &buffers));
         let classes = starts.len() as u32 - 1;
-        for (class, bounds) in (0..).zip(starts.windows(2)) {
+        for (class, bounds) in (1..).zip(starts.windows(2)) {
+            let count = bounds[1] - bounds[0];
+            commands.dispatch(&insertion, [class, bounds[0], count, classes], count);
+            let Some(large) = &large else { continue };
             for first in (bounds[0]..bounds[1]).step_by(part as usize) {
                 let count = part.min(bounds[1] - first);
-                commands.clear(&b.counters, 1);
-                commands.dispatch(&insertion, [class + 1, first, count, classes], count);
+                commands.clear_range(&b.counters, 0, 1);
+                commands.dispatch(large, [class, first, count, classes], count);
             }
         }
         commands.clear(&b.new_indices, 1);
         let count = self.kernels.get("commit_count");
-        commands.run(count, &[&b.states, &b.new_indices], [0; 4], slots);
-        self.record_scan(&mut commands, &b.new_indices, 0, slots + 1);
+        commands.run(count, &[&b.candidates, &b.new_indices], [0; 4], candidates);
+        self.record_scan(&mut commands, &b.new_indices, 0, candidates + 1);
         commands.finish()
     }
 
     /// `next_ring`: radii that cover the next level's rings.
-    pub(crate) fn next_ring(&mut self) -> Result<(), Error> {
+    pub(crate) fn next_ring(&mut self, left_over: u32) -> Result<(), Error> {
+        fn buffers(b: &Buffers) -> Vec<&Buffer> {
+            let inputs = [&b.points, &b.fans, &b.ring_entries, &b.candidates, &b.around];
+            [&inputs[..], &[&b.next_radii, &b.arena, &b.counters, &b.curves]].concat()
+        }
         if !self.rules.next_ring {
             return Ok(());
         }
         let n = self.params.points;
-        let mut part = n.clamp(1, self.sizing.chunk);
-        loop {
-            self.params.arena_words = words_of(&self.buffers.arena);
-            self.record_next_ring(part)?;
-            let (counters, _) = self.read(&[])?;
-            // Radii are maxima: a second run adds what the first one left out.
-            if self.make_room_in_arena(&counters, &mut part)? {
-                return Ok(());
-            }
-        }
-    }
-
-    fn record_next_ring(&self, part: u32) -> Result<(), Error> {
-        let b = &*self.buffers;
-        let n = self.params.points;
         let mut commands = self.commands();
-        commands.clear(&b.counters, words_of(&b.counters).into());
-        let rings = [&b.points, &b.ring_starts, &b.ring_entries];
-        let candidates = [&b.candidate_positions, &b.candidate_normals, &b.grid, &b.states];
-        let outputs = [&b.next_radii, &b.arena, &b.counters];
-        let kernel = self.kernels.get("next_ring");
-        let bound = commands.bind(kernel, &[&rings[..], &candidates, &outputs].concat());
-        for first in (0..n).step_by(part as usize) {
-            let count = part.min(n - first);
-            commands.clear(&b.counters, 1);
-            commands.dispatch(&bound, [first, count, 0, 0], count);
+        commands.clear(&self.buffers.counters, words_of(&self.buffers.counters).into());
+        commands.run(self.kernels.get("next_ring"), &buffers(self.buffers), [0, n, 0, 0], n);
+        commands.finish()?;
+        if left_over & NEXT_RING != 0 {
+            // Radii are maxima: a second run adds what the first one left out.
+            self.run_large("next_ring_large", buffers)?;
         }
-        commands.finish()
+        self.counters().map(|_| ())
     }
 
     /// `commit`: appends the new points; `earlier` is the number of new points of earlier steps.
@@ -549,17 +563,11 @@ impl Step<'_> {
         self.buffers.parents.grow(self.gpu, kept + 3 * WORD * u64::from(new), kept)?;
         let b = &*self.buffers;
         let mut commands = self.commands();
-        let rings = [&b.points, &b.ring_starts, &b.ring_entries];
-        let candidates = [&b.candidate_positions, &b.candidate_normals, &b.owners];
-        let outputs = [&b.new_indices, &b.next_radii, &b.parents, &b.curves];
+        let inputs = [&b.points, &b.candidates, &b.new_indices, &b.next_radii];
         let kernel = self.kernels.get("commit");
-        let invocations = self.params.points.max(self.params.slots);
-        commands.run(
-            kernel,
-            &[&rings[..], &candidates, &outputs].concat(),
-            [earlier, 0, 0, 0],
-            invocations,
-        );
+        let buffers = [&inputs[..], &[&b.parents, &b.curves]].concat();
+        let invocations = self.params.points.max(self.params.candidates);
+        commands.run(kernel, &buffers, [earlier, 0, 0, 0], invocations);
         commands.finish()
     }
 }

@@ -33,7 +33,7 @@ pub(crate) fn set_conormals(features: &mut Features, cloud: Cloud<'_>) {
 fn around(records: &[Record], cloud: Cloud<'_>, grid: &Grid, by_point: &[u32]) -> Vec<Vec<Vec3>> {
     let mut found: Vec<(u32, usize, Vec3)> = Vec::new();
     let (center, radius) = (records[0].position, cloud.radii[records[0].point as usize]);
-    grid.visit_ball(center, radius, |id| {
+    grid.visit_ball(center, radius, |id, _| {
         let d = cloud.positions[id as usize] - center;
         let d2 = d.dot(d);
         if by_point[id as usize] == NONE && d2 <= radius * radius && is_apart(d2, radius) {

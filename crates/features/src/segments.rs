@@ -113,7 +113,7 @@ impl<'a> Creases<'a> {
         let center = self.position(end.group);
         let radius = REACH * self.cloud.radii[self.groups[end.group as usize][0] as usize];
         let mut best: Option<Link> = None;
-        self.grid.visit_ball(center, radius, |other| {
+        self.grid.visit_ball(center, radius, |other, _| {
             let d = self.position(other) - center;
             if other == end.group || d.dot(d) > radius * radius {
                 return;

@@ -59,7 +59,7 @@ fn candidate(front: &Front, grid: &Grid, triangle: [u32; 3]) -> Option<Candidate
     }
     let normal = pn_triangle::new_normal(corners, rho, Rules::ALL)?;
     let mut nearest = rho * rho;
-    grid.visit_ball(position, rho, |id| {
+    grid.visit_ball(position, rho, |id, _| {
         let d = front.level.positions[id as usize] - position;
         nearest = nearest.min(d.dot(d));
     });
@@ -96,7 +96,7 @@ pub(crate) fn independent(candidates: &[Candidate]) -> Vec<Candidate> {
             other as usize != i && d.dot(d) < reach[i] * reach[i]
         };
         let mut crowded = false;
-        grid.visit_ball(positions[i], reach[i], |other| {
+        grid.visit_ball(positions[i], reach[i], |other, _| {
             crowded |= near(other) && states[other as usize] == State::Taken;
         });
         if crowded {
@@ -104,7 +104,7 @@ pub(crate) fn independent(candidates: &[Candidate]) -> Vec<Candidate> {
             continue;
         }
         states[i] = State::Taken;
-        grid.visit_ball(positions[i], reach[i], |other| {
+        grid.visit_ball(positions[i], reach[i], |other, _| {
             if near(other) {
                 states[other as usize] = State::Out;
             }

@@ -52,7 +52,7 @@ fn bound_by_neighbors(points: &PointSet, raised: &mut [Raised], widest: f32) {
     for raised in raised {
         let center = points.positions[raised.point as usize];
         let mut largest = 0.0f32;
-        grid.visit_ball(center, raised.radius, |p| {
+        grid.visit_ball(center, raised.radius, |p, _| {
             let d = points.positions[p as usize] - center;
             if d.dot(d) <= raised.radius * raised.radius && known.binary_search(&p).is_err() {
                 largest = largest.max(points.radii[p as usize]);

@@ -98,7 +98,7 @@ fn largest_sine(
     let (center, normal) = (positions[p], normals[p].as_dvec3());
     let r2 = f64::from(radius) * f64::from(radius);
     let mut largest: Option<f64> = None;
-    grid.visit_ball(center, radius, |id| {
+    grid.visit_ball(center, radius, |id, _| {
         let d = (positions[id as usize] - center).as_dvec3();
         let d2 = d.length_squared();
         // Nearer than 1e-6 of the radius counts as being in one place.

@@ -28,6 +28,8 @@ pub struct Grid {
     pub starts: Vec<u32>,
     /// Entries by cell, ascending within one.
     pub items: Vec<u32>,
+    /// Their positions: a query reads them one after the other.
+    pub places: Vec<Vec3>,
 }
 
 /// Widens a query a little, so that rounding at a cell's face can't lose an entry.
@@ -81,29 +83,32 @@ impl GridShape {
 }
 
 impl Grid {
-    /// Sorts the positions into cells; entries are indices into `positions`.
+    /// Sorts the positions into cells; entries are the numbers that come with them.
     pub fn build(shape: GridShape, positions: impl Iterator<Item = (u32, Vec3)> + Clone) -> Self {
         let mut starts = vec![0u32; shape.cells() + 1];
-        let mut count = 0;
-        for (_, x) in positions.clone() {
-            starts[shape.cell_of(x) + 1] += 1;
-            count += 1;
+        let cells: Vec<u32> = positions.clone().map(|(_, x)| shape.cell_of(x) as u32).collect();
+        for &cell in &cells {
+            starts[cell as usize + 1] += 1;
         }
         for i in 1..starts.len() {
             starts[i] += starts[i - 1];
         }
-        let mut next = starts.clone();
-        let mut items = vec![0; count];
-        for (id, x) in positions {
-            let slot = &mut next[shape.cell_of(x)];
+        let mut items = vec![0; cells.len()];
+        let mut places = vec![Vec3::ZERO; cells.len()];
+        for ((id, x), &cell) in positions.zip(&cells) {
+            let slot = &mut starts[cell as usize];
             items[*slot as usize] = id;
+            places[*slot as usize] = x;
             *slot += 1;
         }
-        Self { shape, starts, items }
+        // Each cell's start has become its end: that of the next one.
+        starts.copy_within(..shape.cells(), 1);
+        starts[0] = 0;
+        Self { shape, starts, items, places }
     }
 
     /// Calls `visit` once for each entry of every cell that the ball touches: a superset of those inside.
-    pub fn visit_ball(&self, center: Vec3, radius: f32, mut visit: impl FnMut(u32)) {
+    pub fn visit_ball(&self, center: Vec3, radius: f32, mut visit: impl FnMut(u32, Vec3)) {
         let reach = Vec3::splat(radius * SLACK + self.shape.cell * 1e-4);
         let low = self.shape.coordinates(center - reach);
         // A query wider than the period would meet its own cells again.
@@ -117,12 +122,13 @@ impl Grid {
     }
 
     /// Visits the cells from `first` to `last_x` along x: one run of entries, or two where the period ends between.
-    fn visit_row(&self, first: IVec3, last_x: i32, visit: &mut impl FnMut(u32)) {
+    fn visit_row(&self, first: IVec3, last_x: i32, visit: &mut impl FnMut(u32, Vec3)) {
         let begin = self.shape.index(first);
         let end = self.shape.index(first.with_x(last_x));
         let mut run = |from: usize, to: usize| {
-            for &item in &self.items[self.starts[from] as usize..self.starts[to + 1] as usize] {
-                visit(item);
+            let entries = self.starts[from] as usize..self.starts[to + 1] as usize;
+            for (&item, &place) in self.items[entries.clone()].iter().zip(&self.places[entries]) {
+                visit(item, place);
             }
         };
         if begin <= end {
@@ -154,7 +160,10 @@ mod tests {
                 let (center, radius) = (positions[center], radius * scale);
                 let inside = |i: u32| (positions[i as usize] - center).length() <= radius;
                 let mut found = Vec::new();
-                grid.visit_ball(center, radius, |i| found.push(i));
+                grid.visit_ball(center, radius, |i, x| {
+                    assert_eq!(x, positions[i as usize]);
+                    found.push(i);
+                });
                 let visits = found.len();
                 found.sort_unstable();
                 found.dedup();

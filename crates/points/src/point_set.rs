@@ -107,6 +107,31 @@ impl Values {
         each_type!(self, column => column[index] != Default::default())
     }
 
+    /// Overwrites the first entries with all of a column of the same type.
+    pub(crate) fn copy_start(&mut self, start: &Self) {
+        macro_rules! copy {
+            ($($variant:ident)*) => {
+                match (self, start) {
+                    $((Self::$variant(own), Self::$variant(start)) => own[..start.len()].copy_from_slice(start),)*
+                    _ => unreachable!("a refinement keeps the types of its attributes"),
+                }
+            };
+        }
+        copy!(I8 U8 I16 U16 I32 U32 F32 F64);
+    }
+
+    /// The entries of these indices.
+    fn select(&self, order: &[u32]) -> Self {
+        macro_rules! select {
+            ($($variant:ident)*) => {
+                match self {
+                    $(Self::$variant(column) => Self::$variant(pick(column, order)),)*
+                }
+            };
+        }
+        select!(I8 U8 I16 U16 I32 U32 F32 F64)
+    }
+
     fn push_copy(&mut self, index: usize) {
         each_type!(self, column => column.push(column[index]));
     }
@@ -198,6 +223,19 @@ pub enum Invalid {
     TooMany(usize),
 }
 
+impl Invalid {
+    /// The same defect where `order` has the original index of each point.
+    #[must_use]
+    pub fn in_order(self, order: &[u32]) -> Self {
+        match self {
+            Self::NotFinite { point, what, value } => {
+                Self::NotFinite { point: order[point] as usize, what, value }
+            }
+            other => other,
+        }
+    }
+}
+
 impl PointSet {
     /// A point set without attributes.
     pub fn new(positions: Vec<Vec3>, normals: Vec<Vec3>, radii: Vec<f32>) -> Self {
@@ -212,6 +250,22 @@ impl PointSet {
     /// Whether there are no points.
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
+    }
+
+    /// The points of these indices, in that order.
+    pub fn select(&self, order: &[u32]) -> Self {
+        let select = |a: &Attribute| Attribute {
+            name: a.name.clone(),
+            values: a.values.select(order),
+            interpolation: a.interpolation,
+        };
+        Self {
+            positions: pick(&self.positions, order),
+            normals: pick(&self.normals, order),
+            radii: pick(&self.radii, order),
+            attributes: self.attributes.iter().map(select).collect(),
+            origin: self.origin,
+        }
     }
 
     /// The attribute of that name.
@@ -330,6 +384,10 @@ impl PointSet {
             .collect();
         vectors.as_chunks_mut::<3>().0.iter_mut().for_each(|vector| normalize(vector, first));
     }
+}
+
+fn pick<T: Copy>(column: &[T], order: &[u32]) -> Vec<T> {
+    order.iter().map(|&i| column[i as usize]).collect()
 }
 
 /// A normal as the refinement uses it: normalised if its squared length is off 1 by more than 1e-6.

@@ -1,5 +1,9 @@
-//! Candidates `L_p` (section 5, eq. 12): one for each triangle of each fan. Twin: `shaders/candidates.wgsl`.
+//! Candidates `L_p` (section 5, eq. 12): one for each triangle of the fans. Twins: `shaders/candidates*.wgsl`.
+//!
+//! Most triangles are in the fans of all three corners. They are one candidate, which all of these may insert. It belongs to the
+//! first corner, from the smallest index on, whose fan has the triangle.
 
+use crate::lists::Lists;
 use crate::math::TAU;
 use crate::neighborhood::Rings;
 use crate::pn_triangle;
@@ -19,7 +23,7 @@ pub const WIDEST_SHEET: f32 = 2.617_994;
 /// Radii exceed the distance to the farthest natural neighbour by this factor.
 pub const NATURAL: f32 = 1.25;
 
-/// The possible new points of all fans, one for each ring entry (slot), then the new points on creases and boundaries,
+/// The possible new points of all fans, by the slots to which they belong, then the new points on creases and boundaries,
 /// which are inserted in any case.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Candidates {
@@ -27,31 +31,33 @@ pub struct Candidates {
     pub positions: Vec<Vec3>,
     /// Normal: of the curved triangle, or of the flat one if `simplified`.
     pub normals: Vec<Vec3>,
-    /// `ρ`: largest distance to the three corners, or -1 where the slot holds no candidate.
+    /// `ρ`: largest distance to the three corners, or -1 where the triangle has no candidate.
     pub rho: Vec<f32>,
-    /// The point whose fan holds the slot; [`NO_POINT`] for a point on a curve.
-    pub owners: Vec<u32>,
+    /// The corners, smallest index first and orientation kept; of a point on a curve those between which it lies.
+    pub corners: Vec<[u32; 3]>,
+    /// The candidate of each slot; [`NO_POINT`] for slots without a triangle.
+    pub of_slot: Vec<u32>,
     /// Of each point: within this distance new points are new neighbours (section 5).
     pub near: Vec<f32>,
-    /// The first slot of the new points on creases and boundaries.
+    /// The first of the new points on creases and boundaries.
     pub first_on_curve: usize,
 }
 
 impl Candidates {
-    /// Number of slots.
+    /// Number of candidates.
     pub fn len(&self) -> usize {
         self.rho.len()
     }
 
-    /// Whether there are no slots.
+    /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.rho.is_empty()
     }
 
-    /// A slot's point as others see it.
-    pub fn seen(&self, slot: usize, level: &Level) -> Seen {
-        let (position, normal) = (self.positions[slot], self.normals[slot]);
-        let rank = slot.checked_sub(self.first_on_curve);
+    /// A candidate as others see it.
+    pub fn seen(&self, c: usize, level: &Level) -> Seen {
+        let (position, normal) = (self.positions[c], self.normals[c]);
+        let rank = c.checked_sub(self.first_on_curve);
         let record = match (rank, &level.curves) {
             (Some(rank), Some(curves)) => (curves.features.old + rank) as u32,
             _ => NO_POINT,
@@ -59,42 +65,99 @@ impl Candidates {
         Seen { position, normal, record }
     }
 
-    /// Whether the slot holds a candidate.
-    pub fn exists(&self, slot: usize) -> bool {
-        self.rho[slot] > 0.0
+    /// Whether the triangle has a candidate.
+    pub fn exists(&self, c: usize) -> bool {
+        self.rho[c] > 0.0
+    }
+
+    /// The candidates of a point's own fan, `L_p`.
+    pub fn own<'a>(&'a self, rings: &Rings, p: usize) -> impl Iterator<Item = usize> + Clone + 'a {
+        let slots = self.of_slot[rings.slots(p)].iter();
+        slots.filter(|&&c| c != NO_POINT).map(|&c| c as usize).filter(|&c| self.exists(c))
     }
 }
 
-/// A slot that holds no candidate.
-const NONE: (Vec3, Vec3, f32) = (Vec3::ZERO, Vec3::ZERO, -1.0);
-
 /// Computes the candidates of every fan, and takes the new points on curves.
 pub fn candidates(level: &Level, rings: &Rings, params: &RefineParams) -> Candidates {
-    let fans: Vec<Vec<(Vec3, Vec3, f32)>> = (0..level.len())
-        .into_par_iter()
-        .map(|p| {
-            let ring = rings.ring(p);
-            (0..ring.len()).map(|i| candidate(level, rings, params, p, i)).collect()
-        })
-        .collect();
-    let near = (0..level.len()).map(|p| near_radius(level, rings, params, p)).collect();
-    let mut result = Candidates { near, ..Candidates::default() };
-    for (p, fan) in fans.into_iter().enumerate() {
-        for (position, normal, rho) in fan {
-            result.positions.push(position);
-            result.normals.push(normal);
-            result.rho.push(rho);
-            result.owners.push(p as u32);
-        }
-    }
-    result.first_on_curve = result.len();
+    let homes = homes(level, rings);
+    let (of_slot, corners) = number(level, rings, &homes);
+    let made: Vec<(Vec3, Vec3, f32)> =
+        corners.par_iter().map(|&corners| candidate(level, params, corners)).collect();
+    let near = |p| near_radius(level, rings, params, p);
+    let mut result = Candidates {
+        positions: made.iter().map(|c| c.0).collect(),
+        normals: made.iter().map(|c| c.1).collect(),
+        rho: made.iter().map(|c| c.2).collect(),
+        first_on_curve: corners.len(),
+        corners,
+        of_slot,
+        near: (0..level.len()).into_par_iter().map(near).collect(),
+    };
     for point in &level.curve_points {
         result.positions.push(point.position);
         result.normals.push(point.normal);
         result.rho.push(point.rho);
-        result.owners.push(NO_POINT);
+        result.corners.push(point.parents);
     }
     result
+}
+
+/// For each slot the slot to which its triangle belongs; [`NO_POINT`] for slots without a triangle.
+fn homes(level: &Level, rings: &Rings) -> Vec<u32> {
+    let homes = Lists::make(
+        level.len(),
+        || (),
+        |(), p, homes| {
+            homes.extend((0..rings.ring(p).len()).map(|i| {
+                match fan_triangle(level, rings, p, i) {
+                    Some(corners) => home(level, rings, corners, rings.slots(p).start + i),
+                    None => NO_POINT,
+                }
+            }));
+        },
+    );
+    homes.items
+}
+
+/// The slot of a triangle in the fan of the first of its corners that has it; `own` is one that is known.
+fn home(level: &Level, rings: &Rings, [a, b, c]: [u32; 3], own: usize) -> u32 {
+    for [p, from, to] in [[a, b, c], [b, c, a]] {
+        let slots = rings.slots(p as usize);
+        if slots.contains(&own) {
+            break;
+        }
+        let ring = rings.ring(p as usize);
+        let place = ring.iter().position(|entry| entry.id == from);
+        let follows = |i: &usize| ring[if i + 1 == ring.len() { 0 } else { i + 1 }].id == to;
+        let is_triangle = |i: &usize| fan_triangle(level, rings, p as usize, *i).is_some();
+        if let Some(i) = place.filter(follows).filter(is_triangle) {
+            return (slots.start + i) as u32;
+        }
+    }
+    own as u32
+}
+
+/// Numbers the triangles by the slots to which they belong: the number of each slot's, and their corners.
+fn number(level: &Level, rings: &Rings, homes: &[u32]) -> (Vec<u32>, Vec<[u32; 3]>) {
+    let triangles = Lists::make(
+        level.len(),
+        || (),
+        |(), p, triangles| {
+            for (i, slot) in
+                rings.slots(p).enumerate().filter(|&(_, slot)| homes[slot] == slot as u32)
+            {
+                let corners = fan_triangle(level, rings, p, i).expect("a home has a triangle");
+                triangles.push((slot as u32, corners));
+            }
+        },
+    );
+    let mut numbers = vec![NO_POINT; rings.len()];
+    for (number, &(slot, _)) in (0..).zip(&triangles.items) {
+        numbers[slot as usize] = number;
+    }
+    let of_slot =
+        homes.par_iter().map(|&home| numbers.get(home as usize).copied().unwrap_or(NO_POINT));
+    (of_slot.collect(), triangles.items.iter().map(|&(_, corners)| corners).collect())
 }
 
 /// `λ1 r`. The radii of the input may be too large, and would take far points for new neighbours: in the first step they
@@ -112,16 +175,12 @@ fn near_radius(level: &Level, rings: &Rings, params: &RefineParams, p: usize) ->
     params.lambda1 * radius.min(NATURAL * farthest.sqrt())
 }
 
-/// Position, normal and ρ of the candidate of a point's ring entries `i` and `i + 1`.
-fn candidate(
-    level: &Level,
-    rings: &Rings,
-    params: &RefineParams,
-    p: usize,
-    i: usize,
-) -> (Vec3, Vec3, f32) {
-    let Some(triangle) = fan_triangle(level, rings, p, i) else { return NONE };
-    let corners = triangle.map(|c| level.corner(c));
+/// A triangle that holds no candidate.
+const NONE: (Vec3, Vec3, f32) = (Vec3::ZERO, Vec3::ZERO, -1.0);
+
+/// Position, normal and ρ of the candidate of a triangle.
+fn candidate(level: &Level, params: &RefineParams, corners: [u32; 3]) -> (Vec3, Vec3, f32) {
+    let corners = corners.map(|c| level.corner(c));
     let position = if params.simplified {
         pn_triangle::center_of_gravity(corners)
     } else {

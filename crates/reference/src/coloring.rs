@@ -1,7 +1,8 @@
 //! Classes of points that may be refined together: a colouring of `T` (Jones and Plassmann 1993).
 //! Twin: `shaders/coloring.wgsl`.
 
-use crate::conflicts::Graph;
+use crate::lists::Lists;
+use rayon::prelude::*;
 
 /// The class of every point.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -12,7 +13,7 @@ pub struct Classes {
     pub members: Vec<Vec<u32>>,
 }
 
-/// A bijection of the 32-bit integers without visible order (`lowbias32`, C. Wellons).
+/// The priority of a point: a bijection of the 32-bit integers without visible order (`lowbias32`, C. Wellons).
 fn scramble(id: u32) -> u32 {
     let mut x = id;
     x = (x ^ (x >> 16)).wrapping_mul(0x7feb_352d);
@@ -20,39 +21,37 @@ fn scramble(id: u32) -> u32 {
     x ^ (x >> 16)
 }
 
-/// Whether `p` chooses its class before `q`: by a priority that depends on the index alone, never on timing.
-pub fn chooses_before(p: u32, q: u32) -> bool {
-    scramble(p) > scramble(q)
-}
-
 /// Gives every point, in the order of priority, the lowest class that none of its neighbours chose before it.
 ///
 /// The kernels reach the same classes in rounds, since a point's choice depends on those before it alone.
-pub fn coloring(graph: &Graph) -> Classes {
-    let n = graph.starts.len() - 1;
-    let mut order: Vec<u32> = (0..n as u32).collect();
-    order.sort_unstable_by_key(|&p| std::cmp::Reverse(scramble(p)));
-    let mut class = vec![0; n];
-    let mut members: Vec<Vec<u32>> = Vec::new();
+pub fn coloring(graph: &Lists) -> Classes {
+    let mut order: Vec<(u32, u32)> =
+        (0..graph.len() as u32).into_par_iter().map(|p| (scramble(p), p)).collect();
+    order.par_sort_unstable_by(|a, b| b.cmp(a));
+    let mut class = vec![NONE_YET; graph.len()];
     let mut taken = Vec::new();
-    for p in order {
+    for (_, p) in order {
         taken.clear();
-        taken.resize(members.len() + 1, false);
-        for &q in graph.neighbors(p as usize) {
-            if chooses_before(q, p) {
-                taken[class[q as usize] as usize] = true;
+        for &q in graph.of(p as usize) {
+            let chosen = class[q as usize] as usize;
+            if chosen != NONE_YET as usize {
+                taken.resize(taken.len().max(chosen + 1), false);
+                taken[chosen] = true;
             }
         }
-        let lowest = taken.iter().position(|&t| !t).unwrap_or(members.len());
+        let lowest = taken.iter().position(|&t| !t).unwrap_or(taken.len());
         class[p as usize] = lowest as u32;
-        if lowest == members.len() {
-            members.push(Vec::new());
-        }
-        members[lowest].push(p);
     }
-    members.iter_mut().for_each(|m| m.sort_unstable());
+    let mut members: Vec<Vec<u32>> = Vec::new();
+    for (p, &class) in (0..).zip(&class) {
+        members.resize_with(members.len().max(class as usize + 1), Vec::new);
+        members[class as usize].push(p);
+    }
     Classes { class, members }
 }
+
+/// Of points that have not chosen.
+const NONE_YET: u32 = u32::MAX;
 
 #[cfg(test)]
 mod tests {
@@ -66,7 +65,7 @@ mod tests {
         for i in 0..rim {
             lists.push(vec![0, 1 + (i + 1) % rim, 1 + (i + rim - 1) % rim]);
         }
-        let mut graph = Graph { starts: vec![0], items: Vec::new() };
+        let mut graph = Lists::default();
         for list in &lists {
             graph.items.extend(list);
             graph.starts.push(graph.items.len() as u32);

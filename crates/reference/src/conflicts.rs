@@ -1,98 +1,132 @@
-//! The conflict graph `T`: which points must not be refined at the same time. Twin: `shaders/conflicts.wgsl`.
+//! What may happen around each point: the candidates that it may meet, and the conflict graph `T` of the points that must not
+//! be refined at the same time. Twins: `shaders/conflicts*.wgsl`.
 //!
 //! The insertion around a point (section 5) depends on those before it. Two points commute unless
 //! a candidate of one lies within `λ1 r` of the other, so that it would enter its N', or
 //! candidates x and y of the two have `|x - y| < λ2 max(ρ_x, ρ_y)`, so that one would discard the other.
+//!
+//! Both happen only within `max(λ1 r, |x - p| + λ2 ρ_x)` of a point p with candidates x: the corners of all candidates there
+//! count as being in conflict with p. That is more than needed (docs/algorithm.md says how much), and needs no look at pairs of candidates.
 
+use crate::Level;
 use crate::candidates::Candidates;
+use crate::insertion::COVER;
+use crate::lists::Lists;
 use crate::neighborhood::Rings;
-use crate::{Level, NO_POINT};
-use rayon::prelude::*;
+use crate::visible::{View, same_side};
 use surfine_points::{Grid, RefineParams};
 
-/// Lists of points, one list a point.
+/// Widens what lists must hold, so that rounding can't lose an entry.
+const SLACK: f32 = 1.0 + 1e-5;
+
+/// What may happen around each point.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Graph {
-    /// First entry of each list, and one more: the number of entries.
-    pub starts: Vec<u32>,
-    /// Neighbours in the graph, ascending within a list.
-    pub items: Vec<u32>,
+pub struct Conflicts {
+    /// The candidates that a point sees within the largest radius that it may get.
+    pub around: Lists,
+    /// The neighbours of a point in `T`: symmetric, without loops.
+    pub graph: Lists,
 }
 
-impl Graph {
-    /// The neighbours of a point.
-    pub fn neighbors(&self, p: usize) -> &[u32] {
-        &self.items[self.starts[p] as usize..self.starts[p + 1] as usize]
-    }
-}
-
-/// Computes `T`: symmetric, without loops.
+/// Finds the candidates around each point and computes `T`.
 pub fn conflicts(
     level: &Level,
     rings: &Rings,
     candidates: &Candidates,
     candidate_grid: &Grid,
     params: &RefineParams,
-) -> Graph {
-    let found: Vec<Vec<u32>> = (0..level.len())
-        .into_par_iter()
-        .map(|p| found_from(level, rings, candidates, candidate_grid, params, p))
-        .collect();
-    // Both conditions are seen from one side only when the radii differ: add the other side.
-    let mut lists = found.clone();
-    for (p, list) in found.iter().enumerate() {
-        for &q in list {
-            lists[q as usize].push(p as u32);
-        }
-    }
-    let mut graph = Graph { starts: vec![0], items: Vec::new() };
-    for mut list in lists {
-        list.sort_unstable();
-        list.dedup();
-        graph.items.extend(list);
-        graph.starts.push(graph.items.len() as u32);
-    }
-    graph
+) -> Conflicts {
+    let (around, found) = Lists::pair(
+        level.len(),
+        || (),
+        |(), p, around, found| {
+            let reach = Reach::of(level, rings, candidates, params, p);
+            let Reach { largest, conflicts, .. } = reach;
+            let (center, known) = (level.seen(p), found.len());
+            let view = View::new(level, p, largest, params.rules);
+            candidate_grid.visit_ball(center.position, largest.max(conflicts), |c, x| {
+                let d = x - center.position;
+                let d2 = d.dot(d);
+                // Points on curves are there before all others: nobody has them.
+                if d2 <= conflicts * conflicts && (c as usize) < candidates.first_on_curve {
+                    for q in candidates.corners[c as usize] {
+                        if q as usize != p && !found[known..].contains(&q) {
+                            found.push(q);
+                        }
+                    }
+                }
+                let within = reach.of_candidate(params.lambda2 * candidates.rho[c as usize]);
+                if d2 <= within * within {
+                    let other = candidates.seen(c as usize, level);
+                    if same_side(params.rules, other.normal, center.normal) && view.sees(other) {
+                        around.push(c);
+                    }
+                }
+            });
+        },
+    );
+    Conflicts { around, graph: symmetric(&found) }
 }
 
-/// The points in conflict with `p` through its own balls: `λ1 r` around it, `λ2 ρ` around its candidates.
-fn found_from(
-    level: &Level,
-    rings: &Rings,
-    candidates: &Candidates,
-    candidate_grid: &Grid,
-    params: &RefineParams,
-    p: usize,
-) -> Vec<u32> {
-    let center = level.positions[p];
-    let near = candidates.near[p];
-    let own: Vec<usize> = rings.slots(p).filter(|&s| candidates.exists(s)).collect();
-    let mut reach = near;
-    for &s in &own {
-        let d = candidates.positions[s] - center;
-        reach = reach.max(d.dot(d).sqrt() + params.lambda2 * candidates.rho[s]);
+/// How far what bears on a point may be.
+struct Reach {
+    /// The largest radius that it may have at the next level: that of now, or as far as its own candidates are.
+    largest: f32,
+    /// Within this distance are the candidates of all points that it is in conflict with, as far as it can see.
+    conflicts: f32,
+    /// Within this distance new points are new neighbours.
+    near: f32,
+    /// The farthest own candidate, if there is any.
+    own: Option<f32>,
+}
+
+impl Reach {
+    /// Within which distance a candidate with that discard sphere is of interest: others can neither enter N' nor discard what
+    /// might.
+    fn of_candidate(&self, sphere: f32) -> f32 {
+        self.own.map_or(self.largest, |own| {
+            self.largest.min(COVER * SLACK * self.near.max(own + sphere))
+        })
     }
-    // Beyond it no ball reaches, whatever the rounding.
-    let reach_squared = reach * reach * 1.001;
-    let mut found = Vec::new();
-    candidate_grid.visit_ball(center, reach, |y| {
-        let position = candidates.positions[y as usize];
-        let d = position - center;
-        let d2 = d.dot(d);
-        let q = candidates.owners[y as usize];
-        // Points on curves are there before all others: nobody has them.
-        if q == NO_POINT || d2 > reach_squared || q as usize == p || found.contains(&q) {
-            return;
+
+    fn of(
+        level: &Level,
+        rings: &Rings,
+        candidates: &Candidates,
+        params: &RefineParams,
+        p: usize,
+    ) -> Self {
+        let near = candidates.near[p];
+        let (mut own, mut conflicts) = (None, near);
+        for x in candidates.own(rings, p) {
+            let d = candidates.positions[x] - level.positions[p];
+            let distance = d.dot(d).sqrt();
+            own = Some(distance.max(own.unwrap_or(0.0)));
+            conflicts = conflicts.max(distance + params.lambda2 * candidates.rho[x]);
         }
-        let close = d2 < near * near
-            || own.iter().any(|&x| {
-                let d = position - candidates.positions[x];
-                let sphere = params.lambda2 * candidates.rho[x];
-                d.dot(d) < sphere * sphere
-            });
-        if close {
-            found.push(q);
-        }
-    });
-    found
+        let farthest = level.radii[p].max(own.unwrap_or(0.0));
+        Self { largest: COVER * SLACK * farthest, conflicts: SLACK * conflicts, near, own }
+    }
+}
+
+/// Both ends of a conflict see it only where their reaches are alike: adds the other side.
+fn symmetric(found: &Lists) -> Lists {
+    let points = found.len();
+    let one_sided = Lists::make(
+        points,
+        || (),
+        |(), p, one_sided| {
+            let sees_p = |q: u32| found.of(q as usize).contains(&(p as u32));
+            one_sided.extend(found.of(p).iter().copied().filter(|&q| !sees_p(q)));
+        },
+    );
+    let mirrored = one_sided.mirrored();
+    Lists::make(
+        points,
+        || (),
+        |(), p, all| {
+            all.extend(found.of(p));
+            all.extend(mirrored.of(p));
+        },
+    )
 }

@@ -10,6 +10,7 @@ pub mod coloring;
 pub mod commit;
 pub mod conflicts;
 pub mod insertion;
+pub mod lists;
 pub mod neighborhood;
 pub mod next_ring;
 pub mod pn_triangle;

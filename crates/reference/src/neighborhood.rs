@@ -1,11 +1,12 @@
 //! One-ring neighbourhoods (section 4). Twins: `shaders/neighborhood_*.wgsl`.
 
 use crate::Level;
+use crate::lists::Lists;
 use crate::math::{TAU, direction_angle, is_apart};
 use crate::pn_triangle::geodesic_distance;
 use crate::visible::View;
 use glam::Vec3;
-use rayon::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use surfine_points::{Grid, Neighborhood, RefineParams, Rules};
 
 /// Largest badness of a neighbour: 1, and a margin because regular grids give exactly that.
@@ -21,7 +22,7 @@ pub const DOUBTFUL: f32 = 0.5;
 pub const OPEN_GAP: f32 = 1.745_329_3;
 
 /// A corner of a triangle fan.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RingEntry {
     /// Index of the neighbour.
     pub id: u32,
@@ -29,13 +30,12 @@ pub struct RingEntry {
     pub angle: f32,
 }
 
-/// The sorted one-rings of all points, one after the other.
+/// The sorted one-rings of all points: entries by angle, ties by index.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rings {
-    /// First entry of each point's ring, and one more: the number of entries.
-    pub starts: Vec<u32>,
-    /// Entries by angle; ties by distance, then by index.
-    pub entries: Vec<RingEntry>,
+    /// The rings. The place of an entry among all is its slot: slot `i` of a point stands for the triangle of its ring
+    /// entries `i` and `i + 1`.
+    pub lists: Lists<RingEntry>,
     /// Sum of the sizes of the Euclidean neighbourhoods (eq. 7).
     pub ball_neighbors: u64,
 }
@@ -43,22 +43,22 @@ pub struct Rings {
 impl Rings {
     /// The ring of a point.
     pub fn ring(&self, p: usize) -> &[RingEntry] {
-        &self.entries[self.slots(p)]
+        self.lists.of(p)
     }
 
-    /// The candidate slots of a point: slot `i` is the triangle of its ring entries `i` and `i + 1`.
+    /// The slots of a point.
     pub fn slots(&self, p: usize) -> std::ops::Range<usize> {
-        self.starts[p] as usize..self.starts[p + 1] as usize
+        self.lists.range(p)
     }
 
-    /// Number of entries of all rings.
+    /// Number of slots.
     pub fn len(&self) -> usize {
-        self.entries.len()
+        self.lists.items.len()
     }
 
     /// Whether no point has a ring.
     pub fn is_empty(&self) -> bool {
-        self.entries.is_empty()
+        self.len() == 0
     }
 }
 
@@ -102,37 +102,41 @@ impl Neighbor {
 
 /// Computes the one-ring of every point.
 pub fn neighborhood(level: &Level, grid: &Grid, params: &RefineParams) -> Rings {
-    let rings: Vec<(usize, Vec<RingEntry>)> = (0..level.len())
-        .into_par_iter()
-        .map(|p| {
-            let ball = consistent_ball(level, grid, params, p);
-            (ball.0, one_ring(&ball.1, params))
-        })
-        .collect();
-    let mut result = Rings { starts: vec![0], ..Rings::default() };
-    for (ball, ring) in rings {
-        result.ball_neighbors += ball as u64;
-        result.entries.extend(ring);
-        result.starts.push(result.entries.len() as u32);
-    }
-    result
+    let ball_neighbors = AtomicU64::new(0);
+    let lists = Lists::make(level.len(), Scratch::default, |scratch, p, ring| {
+        let size = consistent_ball(level, grid, params, p, &mut scratch.ball);
+        ball_neighbors.fetch_add(size, Relaxed);
+        one_ring(scratch, params);
+        ring.extend(&scratch.ring);
+    });
+    Rings { lists, ball_neighbors: ball_neighbors.into_inner() }
 }
 
-/// `N^E` (eq. 7) without the pairs that eq. 6 rejects; also its size before that.
+/// What a thread uses again for the next point.
+#[derive(Default)]
+struct Scratch {
+    ball: Vec<Neighbor>,
+    kept: Vec<bool>,
+    back: Vec<usize>,
+    ring: Vec<RingEntry>,
+}
+
+/// Finds `N^E` (eq. 7) without the pairs that eq. 6 rejects; returns its size before that.
 fn consistent_ball(
     level: &Level,
     grid: &Grid,
     params: &RefineParams,
     p: usize,
-) -> (usize, Vec<Neighbor>) {
+    ball: &mut Vec<Neighbor>,
+) -> u64 {
     let (center, normal, radius) = (level.positions[p], level.normals[p], level.radii[p]);
     let frame = level.frame(p);
     let inverse = 1.0 / radius;
     let view = View::new(level, p, radius, params.rules);
     let mut size = 0;
-    let mut ball = Vec::new();
-    grid.visit_ball(center, radius, |id| {
-        let d = level.positions[id as usize] - center;
+    ball.clear();
+    grid.visit_ball(center, radius, |id, position| {
+        let d = position - center;
         let d2 = d.dot(d);
         // Coincident points have no direction to each other: they are no neighbours.
         if id as usize == p || d2 > radius * radius || !is_apart(d2, radius) {
@@ -147,7 +151,7 @@ fn consistent_ball(
             ball.extend(neighbor.map(|n| Neighbor { is_doubtful, ..n }));
         }
     });
-    (size, ball)
+    size
 }
 
 /// Eq. 6, printed inverted: whether neither point lies in the cone of apex the other and axis `n0 + n1`. `u` is the unit
@@ -170,24 +174,24 @@ fn is_doubtful(u: Vec3, n0: Vec3, n1: Vec3, rules: Rules) -> bool {
 }
 
 /// Removes the members that lie behind others (eq. 8) and sorts the rest around the centre.
-fn one_ring(ball: &[Neighbor], params: &RefineParams) -> Vec<RingEntry> {
+fn one_ring(Scratch { ball, kept, back, ring }: &mut Scratch, params: &RefineParams) {
     let stays = |i: usize| !ball[i].is_doubtful && !is_behind(ball, i, params.sin_theta_f());
-    let mut kept: Vec<bool> = (0..ball.len()).map(stays).collect();
+    kept.clear();
+    kept.extend((0..ball.len()).map(stays));
     if params.rules.natural_neighbors {
-        let natural = |i: usize| kept[i] || is_in_open_gap(ball, &kept, i) && is_natural(ball, i);
-        kept = (0..ball.len()).map(natural).collect();
+        let natural =
+            |i: &usize| !kept[*i] && is_in_open_gap(ball, kept, *i) && is_natural(ball, *i);
+        back.clear();
+        back.extend((0..ball.len()).filter(natural));
+        back.iter().for_each(|&i| kept[i] = true);
     }
-    let mut ring: Vec<(RingEntry, f32)> = (0..ball.len())
-        .filter(|&i| kept[i])
-        .map(|i| {
-            let Neighbor { id, x, y, .. } = ball[i];
-            (RingEntry { id, angle: direction_angle(y, x) }, x * x + y * y)
-        })
-        .collect();
-    ring.sort_by(|(a, da), (b, db)| {
-        a.angle.total_cmp(&b.angle).then(da.total_cmp(db)).then(a.id.cmp(&b.id))
-    });
-    ring.into_iter().map(|(entry, _)| entry).collect()
+    let entry = |i: usize| {
+        let Neighbor { id, x, y, .. } = ball[i];
+        RingEntry { id, angle: direction_angle(y, x) }
+    };
+    ring.clear();
+    ring.extend((0..ball.len()).filter(|&i| kept[i]).map(entry));
+    ring.sort_unstable_by(|a, b| a.angle.total_cmp(&b.angle).then(a.id.cmp(&b.id)));
 }
 
 /// Whether the kept members next to member `i` on both sides leave a gap that may miss a neighbour.

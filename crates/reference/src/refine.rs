@@ -1,20 +1,20 @@
 //! The loop over levels (section 2).
 
+use crate::Level;
 use crate::boundary::boundary;
 use crate::candidates::{Candidates, candidates};
 use crate::coloring::{Classes, coloring};
 use crate::commit::commit;
-use crate::conflicts::{Graph, conflicts};
+use crate::conflicts::{Conflicts, conflicts};
 use crate::insertion::{Insertion, Order, Stage, insertion};
 use crate::neighborhood::{Rings, neighborhood};
 use crate::next_ring::{Covers, next_ring};
-use crate::{Level, NO_POINT};
 use std::fmt;
 use std::time::{Duration, Instant};
 use surfine_features::{Folded, Records, Refinement, check_marks, fold};
 use surfine_points::{
-    Boundary, Grid, GridShape, Invalid, LevelReport, ParamError, PointSet, Progress, RefineParams,
-    Refined, add_stage_time,
+    Boundary, Grid, GridShape, Invalid, LevelReport, Ordered, ParamError, PointSet, Progress,
+    RefineParams, Refined, add_stage_time,
 };
 
 /// Why a refinement did not run.
@@ -75,7 +75,9 @@ pub fn refine_with(
     params.validate()?;
     points.validate()?;
     check_marks(points, params)?;
-    let records = Records::split(points)?;
+    let ordered = Ordered::new(points);
+    let (input, points) = (points, &ordered.points);
+    let records = Records::split(points).map_err(|e| e.in_order(&ordered.order))?;
     let mut level = Level::new(&records);
     let mut result = Refined { level_sizes: vec![level.len()], ..Refined::default() };
     let keep = |level: &Level| params.keep_radii.then(|| level.radii.clone());
@@ -121,7 +123,9 @@ pub fn refine_with(
     let folded = fold(points, &records, &features, &refinement, params.boundary.property());
     folded.count_points(&mut result.reports);
     let Folded { points, parents, level_sizes, level_radii } = folded;
-    Ok(Refined { points, parents, level_sizes, level_radii, ..result })
+    let mut refined = Refined { points, parents, level_sizes, level_radii, ..result };
+    ordered.restore(input, &mut refined);
+    Ok(refined)
 }
 
 /// Times the stages and tells the caller where the run stands.
@@ -162,7 +166,7 @@ pub struct LevelState {
     pub rings: Rings,
     pub candidates: Candidates,
     pub candidate_grid: Grid,
-    pub conflicts: Graph,
+    pub conflicts: Conflicts,
     pub classes: Classes,
     pub insertion: Insertion,
     pub covers: Covers,
@@ -195,14 +199,9 @@ fn run_stages(
         let conflicts = conflicts(level, &rings, &candidates, &candidate_grid, params);
         (candidate_grid, conflicts)
     });
-    let classes = clock.time("coloring", || coloring(&conflicts));
-    let inputs = Stage {
-        level,
-        rings: &rings,
-        candidates: &candidates,
-        candidate_grid: &candidate_grid,
-        params,
-    };
+    let classes = clock.time("coloring", || coloring(&conflicts.graph));
+    let inputs =
+        Stage { level, rings: &rings, candidates: &candidates, conflicts: &conflicts, params };
     let insertion = clock.time("insertion", || insertion(inputs, &classes, order));
     let covers = clock.time("next_ring", || next_ring(inputs, &insertion));
     let report = LevelReport {
@@ -234,7 +233,6 @@ pub fn point_grid(level: &Level) -> Grid {
 
 /// The existing candidates by cell, in a grid of the same shape as that of the points.
 pub fn candidate_grid(shape: &GridShape, candidates: &Candidates) -> Grid {
-    debug_assert!(candidates.owners.len() < NO_POINT as usize);
-    let slots = (0..candidates.rho.len()).filter(|&s| candidates.exists(s));
-    Grid::build(*shape, slots.map(|s| (s as u32, candidates.positions[s])))
+    let existing = (0..candidates.len()).filter(|&c| candidates.exists(c));
+    Grid::build(*shape, existing.map(|c| (c as u32, candidates.positions[c])))
 }

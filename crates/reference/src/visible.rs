@@ -152,6 +152,11 @@ fn crosses([from, to]: [Vec3; 2], a: Seen, b: Seen) -> bool {
     crossing >= 0.0 && crossing <= ha + hb
 }
 
+/// Whether normals are on one side of the surface, so that their points see each other.
+pub(crate) fn same_side(rules: Rules, a: Vec3, b: Vec3) -> bool {
+    !rules.own_side || a.dot(b) > 0.0
+}
+
 /// Whether a direction lies between the curves that bound a record's sheet, or a little beyond.
 pub fn in_wedge(record: &Record, d: Vec3) -> bool {
     let (e1, e2) = record.frame();
@@ -176,9 +181,13 @@ impl<'a> View<'a> {
         let center = level.seen(p);
         let mut fences = Vec::new();
         if let (Some(curves), true) = (&level.curves, rules.separating_segments) {
-            curves.grid.visit_ball(center.position, (AROUND + 0.5) * radius + curves.reach, |s| {
-                fences.push(s);
-            });
+            curves.grid.visit_ball(
+                center.position,
+                (AROUND + 0.5) * radius + curves.reach,
+                |s, _| {
+                    fences.push(s);
+                },
+            );
         }
         Self { curves: level.curves.as_ref(), center, fences, radius, rules }
     }

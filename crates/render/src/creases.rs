@@ -116,7 +116,7 @@ impl Crease {
     /// The discs within the radius, but those of the point itself.
     fn neighbors(&self, grid: &Grid, splats: &Splats) -> Vec<Neighbor> {
         let mut near = Vec::new();
-        grid.visit_ball(self.position, self.radius, |j| {
+        grid.visit_ball(self.position, self.radius, |j, _| {
             let disc = j as usize;
             let point = &splats.points[disc];
             let offset = Vec3::from(point.position) - self.position;

@@ -84,7 +84,7 @@ impl<'a> Samples<'a> {
     /// Calls `visit` with every other sample within reach and the weight of the pair.
     fn visit_near(&self, i: u32, mut visit: impl FnMut(u32, f64)) {
         let center = self.positions[i as usize];
-        self.grid.visit_ball(center, self.reach, |j| {
+        self.grid.visit_ball(center, self.reach, |j, _| {
             if j == i || !self.alive[j as usize] {
                 return;
             }

@@ -153,7 +153,7 @@ impl<'a> Cloud<'a> {
     /// Calls `visit` with each point within a ball around point `i` that isn't at its very place, and the distance.
     fn visit_places(&self, i: usize, ball: f64, mut visit: impl FnMut(usize, f64)) {
         let center = self.positions[i];
-        self.grid.visit_ball(center, ball as f32, |j| {
+        self.grid.visit_ball(center, ball as f32, |j, _| {
             let offset = self.positions[j as usize].as_dvec3() - center.as_dvec3();
             let distance = offset.length();
             if distance > 0.0 && distance <= ball {

@@ -1,0 +1,121 @@
+//! Lists that belong to points, one after the other in memory.
+
+use rayon::prelude::*;
+
+/// Points whose lists one thread makes before it takes the next ones.
+const CHUNK: usize = 1024;
+
+/// One list a point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lists<T = u32> {
+    /// First entry of each list, and one more: the number of entries.
+    pub starts: Vec<u32>,
+    /// The entries of all lists.
+    pub items: Vec<T>,
+}
+
+impl<T> Default for Lists<T> {
+    fn default() -> Self {
+        Self { starts: vec![0], items: Vec::new() }
+    }
+}
+
+impl<T: Copy + Default + Send + Sync> Lists<T> {
+    /// Makes the lists of so many points on all cores: `make` appends that of a point. `scratch` makes what a thread keeps from
+    /// point to point.
+    pub fn make<S>(
+        points: usize,
+        scratch: impl Fn() -> S + Sync,
+        make: impl Fn(&mut S, usize, &mut Vec<T>) + Sync,
+    ) -> Self {
+        Self::pair(points, scratch, |s, p, items, _: &mut Vec<()>| make(s, p, items)).0
+    }
+
+    /// Makes two lists for each point at once.
+    pub fn pair<U: Copy + Default + Send + Sync, S>(
+        points: usize,
+        scratch: impl Fn() -> S + Sync,
+        make: impl Fn(&mut S, usize, &mut Vec<T>, &mut Vec<U>) + Sync,
+    ) -> (Self, Lists<U>) {
+        let chunks: Vec<(Chunk<T>, Chunk<U>)> = (0..points.div_ceil(CHUNK))
+            .into_par_iter()
+            .map_init(&scratch, |scratch, chunk| {
+                let (mut one, mut other) = (Chunk::default(), Chunk::default());
+                for point in chunk * CHUNK..((chunk + 1) * CHUNK).min(points) {
+                    make(scratch, point, &mut one.items, &mut other.items);
+                    one.ends.push(one.items.len() as u32);
+                    other.ends.push(other.items.len() as u32);
+                }
+                (one, other)
+            })
+            .collect();
+        let (one, other): (Vec<_>, Vec<_>) = chunks.into_iter().unzip();
+        (Self::join(&one), Lists::join(&other))
+    }
+
+    fn join(chunks: &[Chunk<T>]) -> Self {
+        let total = chunks.iter().map(|chunk| chunk.items.len()).sum();
+        let mut starts = vec![0];
+        let mut items = vec![T::default(); total];
+        let (mut rest, mut parts) = (items.as_mut_slice(), Vec::new());
+        for chunk in chunks {
+            let first = starts[starts.len() - 1];
+            starts.extend(chunk.ends.iter().map(|end| first + end));
+            let (part, after) = rest.split_at_mut(chunk.items.len());
+            parts.push((part, &chunk.items));
+            rest = after;
+        }
+        parts.into_par_iter().for_each(|(part, own)| part.copy_from_slice(own));
+        Self { starts, items }
+    }
+}
+
+/// The lists of some points: where each ends, and their entries.
+#[derive(Default)]
+struct Chunk<T> {
+    ends: Vec<u32>,
+    items: Vec<T>,
+}
+
+impl<T> Lists<T> {
+    /// Number of lists.
+    pub fn len(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Whether there are no lists.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Where the entries of a point's list are.
+    pub fn range(&self, p: usize) -> std::ops::Range<usize> {
+        self.starts[p] as usize..self.starts[p + 1] as usize
+    }
+
+    /// The list of a point.
+    pub fn of(&self, p: usize) -> &[T] {
+        &self.items[self.range(p)]
+    }
+}
+
+impl Lists {
+    /// Lists of the points on whose lists each point is, ascending.
+    pub fn mirrored(&self) -> Self {
+        let mut starts = vec![0; self.starts.len()];
+        for &q in &self.items {
+            starts[q as usize + 1] += 1;
+        }
+        for i in 1..starts.len() {
+            starts[i] += starts[i - 1];
+        }
+        let (mut next, mut items) = (starts.clone(), vec![0; self.items.len()]);
+        for p in 0..self.len() {
+            for &q in self.of(p) {
+                items[next[q as usize] as usize] = p as u32;
+                next[q as usize] += 1;
+            }
+        }
+        Self { starts, items }
+    }
+}

@@ -1,0 +1,86 @@
+// candidates: to which point the triangle of each slot belongs, that it is one candidate though three fans have it.
+// Twin: `homes` in crates/reference/src/candidates.rs
+// One invocation per point.
+
+@group(0) @binding(2) var<storage, read> points: array<Point>;
+@group(0) @binding(3) var<storage, read_write> fans: array<Fan>;
+@group(0) @binding(4) var<storage, read> ring_entries: array<vec2<u32>>;
+/// The slot to which each slot's triangle belongs; NONE for slots without a triangle.
+@group(0) @binding(5) var<storage, read_write> homes: array<u32>;
+/// Number of triangles of each point at the index after its own.
+@group(0) @binding(6) var<storage, read_write> first_candidates: array<u32>;
+@group(0) @binding(7) var<storage, read> curves: array<u32>;
+
+/// A rule beyond the paper: see `Rules` in crates/points/src/params.rs.
+override first_radii: bool = true;
+
+/// Radii exceed the distance to the farthest natural neighbour by this factor.
+const NATURAL: f32 = 1.25;
+
+@compute @workgroup_size(64)
+fn candidates_home(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let p = linear_index(id, groups);
+    if p >= params.points {
+        return;
+    }
+    let block = fans[p].slots;
+    var count = 0u;
+    for (var slot = block.x; slot < block.x + block.y; slot++) {
+        let corners = fan_triangle(p, slot);
+        var home = NONE;
+        if corners.x != NONE {
+            home = home_of(corners, p, slot);
+        }
+        homes[slot] = home;
+        count += u32(home == slot);
+    }
+    first_candidates[p + 1u] = count;
+    fans[p].near = near_radius(p, block);
+}
+
+/// The slot of a triangle in the fan of the first of its corners that has it; p's own slot is known.
+fn home_of(corners: vec3<u32>, p: u32, own: u32) -> u32 {
+    if corners.x == p {
+        return own;
+    }
+    let first = slot_of(corners.x, corners.y, corners.z);
+    if first != NONE || corners.y == p {
+        return select(first, own, first == NONE);
+    }
+    let second = slot_of(corners.y, corners.z, corners.x);
+    return select(second, own, second == NONE);
+}
+
+/// The slot of the triangle in the fan of p that leads from one corner to the other, or NONE.
+fn slot_of(p: u32, begin: u32, end: u32) -> u32 {
+    let block = fans[p].slots;
+    var found = NONE;
+    for (var slot = block.x; slot < block.x + block.y; slot++) {
+        found = select(found, slot, ring_entries[slot].x == begin);
+    }
+    if found == NONE {
+        return NONE;
+    }
+    let next = select(found + 1u, block.x, found + 1u == block.x + block.y);
+    let is_there = ring_entries[next].x == end && fan_triangle(p, found).x != NONE;
+    return select(NONE, found, is_there);
+}
+
+/// λ1 r. The radii of the input may be too large, and would take far points for new neighbours: in the first step they
+/// count as no more than NATURAL times the distance to the farthest neighbour.
+fn near_radius(p: u32, block: vec2<u32>) -> f32 {
+    let radius = points[p].radius;
+    if !first_radii || params.level > 1u || block.y == 0u {
+        return params.lambda1 * radius;
+    }
+    var farthest = 0.0;
+    for (var slot = block.x; slot < block.x + block.y; slot++) {
+        let d = points[ring_entries[slot].x].position - points[p].position;
+        farthest = max(farthest, dot3(d, d));
+    }
+    return params.lambda1 * min(radius, NATURAL * sqrt(farthest));
+}
+
+fn curve_word(at: u32) -> u32 {
+    return curves[at];
+}

@@ -1,0 +1,109 @@
+// The Euclidean neighbourhood N^E of a point without the pairs that eq. 6 rejects (sections 3 and 4).
+// Twin: `consistent_ball` in crates/reference/src/neighborhood.rs
+//
+// Expects what neighborhood.wgsl declares.
+
+/// The accurate neighbourhood N^g, or else the fuzzy one N^f.
+override accurate: bool = true;
+/// Rules beyond the paper: see `Rules` in crates/points/src/params.rs.
+override opposite_pairs: bool = true;
+override narrow_cones: bool = true;
+override sure_neighbors: bool = true;
+
+/// Cosine of 150°: points whose normals differ more are no neighbours, though eq. 6 lets exactly opposite ones pass.
+const OPPOSITE: f32 = -0.8660254;
+/// Share of the bound of eq. 6 from which pairs are rejected.
+const NARROW: f32 = 0.7;
+/// Share of the bound of eq. 6 from which pairs are doubtful.
+const DOUBTFUL_SHARE: f32 = 0.5;
+
+/// Lists N^E (eq. 7), all points within the radius but those in the same place. Returns how many they are, of which no more
+/// are listed than fit.
+fn gather_ball(p: u32) -> u32 {
+    let center = points[p];
+    var size = 0u;
+    let span = ball_span(center.position, center.radius);
+    for (var run = 0u; run < span.runs; run++) {
+        let entries = entries_of_run(span, run);
+        for (var i = entries.x; i < entries.y; i++) {
+            let entry = places[i];
+            let d = bitcast<vec3<f32>>(entry.xyz) - center.position;
+            let d2 = dot3(d, d);
+            // Written in any case: branches that neighbouring points take differently cost more.
+            set_word(ID, size, entry.w);
+            let inside = entry.w != p & d2 <= center.radius * center.radius & is_apart(d2, center.radius);
+            size += u32(inside);
+        }
+    }
+    return size;
+}
+
+/// How many words the rows must hold, with one for what is written and then not kept.
+fn count_members(p: u32) -> u32 {
+    let center = points[p];
+    var size = 0u;
+    let span = ball_span(center.position, center.radius);
+    for (var run = 0u; run < span.runs; run++) {
+        let entries = entries_of_run(span, run);
+        for (var i = entries.x; i < entries.y; i++) {
+            let entry = places[i];
+            let d = bitcast<vec3<f32>>(entry.xyz) - center.position;
+            size += u32(dot3(d, d) <= center.radius * center.radius);
+        }
+    }
+    return size + 1u;
+}
+
+/// Keeps the members that eq. 6 does not reject, lays them onto the tangent plane, and returns how many are left.
+fn keep_consistent(p: u32, size: u32) -> u32 {
+    let center = points[p];
+    let frame = frame_of(p);
+    let seen = Seen(center.position, center.normal, record_of(p));
+    let near_curves = is_near_curves(center.position, center.radius);
+    let inverse = 1.0 / center.radius;
+    var members = 0u;
+    for (var i = 0u; i < size; i++) {
+        let q = word(ID, i);
+        let d = points[q].position - center.position;
+        let d2 = dot3(d, d);
+        let normal = points[q].normal;
+        let u = d * (1.0 / sqrt(d2));
+        let x = dot3(d, frame.e1);
+        let y = dot3(d, frame.e2);
+        let q2 = x * x + y * y;
+        var stays = q2 > 1e-12 * d2 & consistent(u, center.normal, normal);
+        if with_curves {
+            stays = stays && sees(seen, near_curves, center.radius, Seen(points[q].position, normal, record_of(q)));
+        }
+        var scale = inverse;
+        if accurate {
+            // The geodesic projection q' (eq. 9).
+            scale = (geodesic_distance(d, center.normal, normal) * inverse) / sqrt(q2);
+        }
+        set_word(ID, members, q);
+        set_word(FATE, members, select(KEPT, DOUBTFUL, is_doubtful(u, center.normal, normal)));
+        set_number(X, members, x * scale);
+        set_number(Y, members, y * scale);
+        if !accurate {
+            set_vector(OFFSET, members, d * inverse);
+        }
+        members += u32(stays);
+    }
+    return members;
+}
+
+/// Eq. 6, printed inverted: whether neither point lies in the cone of apex the other and axis n0 + n1.
+fn consistent(u: vec3<f32>, n0: vec3<f32>, n1: vec3<f32>) -> bool {
+    let cosine = dot3(n0, n1);
+    let along = abs(dot3(n0 + n1, u));
+    // The margin is for flat surfaces, where both sides are rounding.
+    let bound = select(1.0 + cosine, NARROW * (1.0 + cosine) + 1e-6, narrow_cones);
+    return along <= bound & !(opposite_pairs & cosine < OPPOSITE);
+}
+
+/// Whether a pair that passes is doubtful: a step between two sheets rather than a slope of one.
+fn is_doubtful(u: vec3<f32>, n0: vec3<f32>, n1: vec3<f32>) -> bool {
+    let along = abs(dot3(n0 + n1, u));
+    let beyond = along > DOUBTFUL_SHARE * (1.0 + dot3(n0, n1)) + 1e-6;
+    return sure_neighbors & natural_neighbors & beyond;
+}
