@@ -3,13 +3,13 @@
 use crate::args::AdaptersArgs;
 use crate::{Failure, print};
 use serde::Serialize;
-use std::fmt::Write;
+use std::fmt::{self, Display, Formatter};
 use surfine::wgpu::{self, AdapterInfo, DeviceType};
 use surfine::{Mode, adapters, choose_adapter};
 
 /// What the program says about an adapter.
 #[derive(Serialize)]
-struct Entry {
+pub(crate) struct Description {
     name: String,
     /// `hardware` or `software`.
     r#type: &'static str,
@@ -19,6 +19,12 @@ struct Entry {
     driver: String,
     /// `exact` or `plain`.
     mode: &'static str,
+}
+
+#[derive(Serialize)]
+struct Entry {
+    #[serde(flatten)]
+    adapter: Description,
     /// Whether `--backend gpu` takes it.
     chosen: bool,
 }
@@ -49,20 +55,34 @@ pub(crate) fn is_software(info: &AdapterInfo) -> bool {
 fn entries(adapters: &[wgpu::Adapter], chosen: &AdapterInfo) -> Vec<Entry> {
     // Equal adapters can't be told apart: the first of them is the chosen one.
     let position = adapters.iter().position(|a| a.get_info() == *chosen);
-    let entry = |(i, adapter)| Entry { chosen: Some(i) == position, ..entry(adapter) };
+    let entry =
+        |(i, adapter)| Entry { adapter: Description::new(adapter), chosen: Some(i) == position };
     adapters.iter().enumerate().map(entry).collect()
 }
 
-fn entry(adapter: &wgpu::Adapter) -> Entry {
-    let info = adapter.get_info();
-    Entry {
-        r#type: if is_software(&info) { "software" } else { "hardware" },
-        kind: kind(info.device_type),
-        mode: mode(adapter, &info).name(),
-        driver: format!("{} {}", info.driver, info.driver_info).trim().into(),
-        backend: info.backend.to_string(),
-        name: info.name,
-        chosen: false,
+impl Description {
+    pub(crate) fn new(adapter: &wgpu::Adapter) -> Self {
+        let info = adapter.get_info();
+        Self {
+            r#type: if is_software(&info) { "software" } else { "hardware" },
+            kind: kind(info.device_type),
+            mode: mode(adapter, &info).name(),
+            driver: format!("{} {}", info.driver, info.driver_info).trim().into(),
+            backend: info.backend.to_string(),
+            name: info.name,
+        }
+    }
+
+    /// Whether results must be those of the CPU backend: software drivers round as the kernels ask for.
+    pub(crate) fn gives_cpu_bytes(&self) -> bool {
+        self.mode == Mode::Exact.name() && self.r#type == "software"
+    }
+}
+
+impl Display for Description {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Self { name, r#type, kind, backend, driver, mode } = self;
+        write!(f, "{name}: {type} ({kind}), {backend}, {driver}, mode {mode}")
     }
 }
 
@@ -86,9 +106,7 @@ fn text(list: &List) -> String {
     let mut text = String::new();
     for entry in &list.adapters {
         let mark = if entry.chosen { '*' } else { ' ' };
-        let Entry { name, r#type, kind, backend, driver, mode, .. } = entry;
-        // Writing to a string can't fail.
-        let _ = writeln!(text, "{mark} {name}: {type} ({kind}), {backend}, {driver}, mode {mode}");
+        text += &format!("{mark} {}\n", entry.adapter);
     }
     text += match list.auto_backend {
         "gpu" => "* is taken by `refine`, unless --backend or --adapter say otherwise\n",

@@ -1,9 +1,11 @@
 //! The command line.
 
+mod bench;
 mod evaluate;
 mod holes;
 mod render;
 
+pub(crate) use bench::{BenchArgs, BenchBackend};
 pub(crate) use evaluate::EvaluateArgs;
 pub(crate) use holes::{FillArgs, FillChoice, HolesArgs};
 pub(crate) use render::{ColorChoice, RenderArgs};
@@ -22,6 +24,7 @@ Examples:
   surfine refine torus.ply -o fine.ply          refine it twice: about 9 times the points
   surfine render torus.ply fine.ply -o both.png look at both, side by side
   surfine adapters                              show what the GPU backend could use
+  surfine bench                                 measure how fast this machine refines
   surfine help refine                           show all options of a command
 
 Exit codes: 0 success, 1 failure (one line on standard error), 2 wrong usage.";
@@ -84,6 +87,8 @@ pub(crate) enum Command {
     Evaluate(EvaluateArgs),
     /// List the GPU adapters of this machine
     Adapters(AdaptersArgs),
+    /// Measure how fast this machine refines, on the CPU and on the GPU
+    Bench(BenchArgs),
     /// Make a cloud on a simple surface
     Sample(SampleArgs),
 }
@@ -229,20 +234,35 @@ enum NeighborhoodChoice {
     Fuzzy,
 }
 
+impl From<NeighborhoodChoice> for Neighborhood {
+    fn from(choice: NeighborhoodChoice) -> Self {
+        match choice {
+            NeighborhoodChoice::Accurate => Self::Accurate,
+            NeighborhoodChoice::Fuzzy => Self::Fuzzy,
+        }
+    }
+}
+
 impl Cli {
     /// Reads the command line; help, version and wrong usage end the program.
     pub(crate) fn from_command_line() -> Self {
         let cli = Self::parse();
-        if let Command::Refine(args) = &cli.command
-            && args.backend == BackendChoice::Cpu
-            && args.adapter.is_some()
-        {
+        let no_gpu = match &cli.command {
+            Command::Refine(args) if args.backend == BackendChoice::Cpu => {
+                args.adapter.as_ref().map(|_| "refine")
+            }
+            Command::Bench(args) if args.backend == BenchBackend::Cpu => {
+                args.adapter.as_ref().map(|_| "bench")
+            }
+            _ => None,
+        };
+        if let Some(name) = no_gpu {
             let mut root = Self::command();
-            // The usage line of the error is then that of `refine`.
+            // The usage line of the error is then that of the command.
             root.build();
-            let refine = root.find_subcommand_mut("refine").expect("it was just parsed");
+            let command = root.find_subcommand_mut(name).expect("it was just parsed");
             let text = "the argument '--adapter <NAME>' cannot be used with '--backend cpu'";
-            refine.error(ErrorKind::ArgumentConflict, text).exit();
+            command.error(ErrorKind::ArgumentConflict, text).exit();
         }
         cli
     }
@@ -267,10 +287,6 @@ impl RefineArgs {
 
     /// The parameters; each was checked when it was parsed.
     pub(crate) fn params(&self) -> RefineParams {
-        let neighborhood = match self.neighborhood {
-            NeighborhoodChoice::Accurate => Neighborhood::Accurate,
-            NeighborhoodChoice::Fuzzy => Neighborhood::Fuzzy,
-        };
         let mut rules = if self.literal { Rules::LITERAL } else { Rules::ALL };
         for name in &self.without {
             *rules.get_mut(name).expect("the name was checked") = false;
@@ -284,7 +300,7 @@ impl RefineArgs {
         let &Self { theta_f, theta_c, lambda1, lambda2, .. } = self;
         RefineParams {
             levels,
-            neighborhood,
+            neighborhood: self.neighborhood.into(),
             simplified,
             plain_angle,
             theta_f,

@@ -3,6 +3,7 @@
 mod adapters;
 mod args;
 mod backend;
+mod bench;
 mod cloud;
 mod evaluate;
 mod files;
@@ -32,6 +33,7 @@ fn main() -> ExitCode {
         Command::Render(args) => render::run(args),
         Command::Evaluate(args) => evaluate::run(args),
         Command::Adapters(args) => adapters::run(args),
+        Command::Bench(args) => bench::run(args),
         Command::Sample(args) => sample::run(args),
     };
     match result {

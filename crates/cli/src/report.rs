@@ -64,7 +64,7 @@ pub(crate) struct Report {
 }
 
 #[derive(Serialize)]
-struct Params {
+pub(crate) struct Params {
     levels: u32,
     /// The one that was used: `accurate` or `fuzzy`.
     neighborhood: &'static str,
@@ -155,17 +155,17 @@ impl Report {
     }
 }
 
-fn name(path: &Path) -> String {
+pub(crate) fn name(path: &Path) -> String {
     path.display().to_string()
 }
 
-fn per_second(count: usize, time: Duration) -> f64 {
+pub(crate) fn per_second(count: usize, time: Duration) -> f64 {
     // A refinement of nothing may take no time that the clock shows.
     count as f64 / time.as_secs_f64().max(1e-9)
 }
 
 impl Params {
-    fn new(params: &RefineParams) -> Self {
+    pub(crate) fn new(params: &RefineParams) -> Self {
         // The fourth decimal is the last that 32-bit radians keep.
         let degrees = |angle: f32| (f64::from(angle).to_degrees() * 1e4).round() / 1e4;
         Self {
@@ -187,6 +187,19 @@ impl Params {
             boundary_property: params.boundary.property().map(str::to_owned),
             rules: params.rules.named().into_iter().filter(|r| r.1).map(|r| r.0).collect(),
         }
+    }
+}
+
+impl Display for Params {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let levels = counted(self.levels as usize, "level", "levels");
+        let simplified = if self.simplified { "simplified, " } else { "" };
+        let rules = counted(self.rules.len(), "rule", "rules");
+        write!(
+            f,
+            "{levels}, {simplified}{} neighborhoods, {rules} beyond the paper",
+            self.neighborhood
+        )
     }
 }
 
@@ -285,12 +298,12 @@ fn notes(args: &RefineArgs, read: Input<'_>, computed: &Computed, mode: Mode) ->
     notes
 }
 
-fn counted(count: usize, one: &str, many: &str) -> String {
+pub(crate) fn counted(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }
 
 /// A JSON object that keeps the order of its keys.
-fn in_order<S: Serializer>(
+pub(crate) fn in_order<S: Serializer>(
     entries: &[(&'static str, f64)],
     serializer: S,
 ) -> Result<S::Ok, S::Error> {

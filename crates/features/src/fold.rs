@@ -76,6 +76,11 @@ pub fn fold(
     Folded { points, parents, level_sizes, level_radii }
 }
 
+/// Whether every record is a point, and no property says what it is: then there is nothing to fold.
+pub fn is_plain(input: &PointSet, features: &Features, marks: Option<&str>) -> bool {
+    features.is_empty() && marks.is_none() && !has_further_normals(input)
+}
+
 /// Which record is which point.
 struct Places {
     /// The point of each record.

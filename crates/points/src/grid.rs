@@ -7,6 +7,8 @@
 //! `shaders/shared`.
 
 use glam::{IVec3, Vec3};
+use rayon::prelude::*;
+use std::ops::Range;
 
 /// Geometry of a grid: everything a query needs besides the cells themselves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,8 +67,10 @@ impl GridShape {
     }
 
     /// Coordinates of the cell that holds `x`, before wrapping.
+    #[inline]
     fn coordinates(&self, x: Vec3) -> IVec3 {
-        ((x - self.origin) * (1.0 / self.cell)).floor().as_ivec3()
+        let places = (x - self.origin) * (1.0 / self.cell);
+        IVec3::from_array(places.to_array().map(floor))
     }
 
     /// Index of a cell: its coordinates wrapped, x running fastest.
@@ -82,33 +86,98 @@ impl GridShape {
     }
 }
 
+/// The largest integer that is no larger: where the processor has no instruction for it a call of the system library is slow.
+#[inline]
+fn floor(x: f32) -> i32 {
+    let truncated = x as i32;
+    truncated.saturating_sub(i32::from(truncated as f32 > x))
+}
+
 impl Grid {
     /// Sorts the positions into cells; entries are the numbers that come with them.
     pub fn build(shape: GridShape, positions: impl Iterator<Item = (u32, Vec3)> + Clone) -> Self {
+        let (numbers, positions): (Vec<u32>, Vec<Vec3>) = positions.unzip();
+        Self::sort(shape, &positions, |i| numbers[i])
+    }
+
+    /// Sorts positions into cells; `number` says what number the entry of each has.
+    pub fn sort(
+        shape: GridShape,
+        positions: &[Vec3],
+        number: impl Fn(usize) -> u32 + Sync,
+    ) -> Self {
+        let cells: Vec<u32> = positions.par_iter().map(|&x| shape.cell_of(x) as u32).collect();
         let mut starts = vec![0u32; shape.cells() + 1];
-        let cells: Vec<u32> = positions.clone().map(|(_, x)| shape.cell_of(x) as u32).collect();
-        for &cell in &cells {
-            starts[cell as usize + 1] += 1;
-        }
-        for i in 1..starts.len() {
-            starts[i] += starts[i - 1];
-        }
+        // Each thread sorts the entries of some of the cells.
+        let share = shape.cells() / rayon::current_num_threads().next_power_of_two().min(16);
+        let own = |part: usize| (part * share) as u32..((part + 1) * share) as u32;
+        let counts = starts[1..].par_chunks_mut(share).enumerate().map(|(part, counts)| {
+            let own = own(part);
+            let cells = cells.iter().filter(|cell| own.contains(cell));
+            cells.for_each(|cell| counts[(cell - own.start) as usize] += 1);
+            counts.iter().sum::<u32>()
+        });
+        let counts: Vec<u32> = counts.collect();
         let mut items = vec![0; cells.len()];
         let mut places = vec![Vec3::ZERO; cells.len()];
-        for ((id, x), &cell) in positions.zip(&cells) {
-            let slot = &mut starts[cell as usize];
-            items[*slot as usize] = id;
-            places[*slot as usize] = x;
-            *slot += 1;
+        let (mut rest, mut parts, mut first) = ((&mut *items, &mut *places), Vec::new(), 0);
+        for (counts, starts) in counts.iter().zip(starts[1..].chunks_mut(share)) {
+            let items = rest.0.split_at_mut(*counts as usize);
+            let places = rest.1.split_at_mut(*counts as usize);
+            parts.push((first, starts, items.0, places.0));
+            (rest, first) = ((items.1, places.1), first + counts);
         }
-        // Each cell's start has become its end: that of the next one.
-        starts.copy_within(..shape.cells(), 1);
-        starts[0] = 0;
+        parts.into_par_iter().enumerate().for_each(|(part, (first, starts, items, places))| {
+            let mut next = 0;
+            for start in &mut *starts {
+                next += std::mem::replace(start, next);
+            }
+            let own = own(part);
+            for (i, cell) in cells.iter().enumerate().filter(|(_, cell)| own.contains(cell)) {
+                let slot = &mut starts[(cell - own.start) as usize];
+                items[*slot as usize] = number(i);
+                places[*slot as usize] = positions[i];
+                *slot += 1;
+            }
+            // Each cell's start has become its end: that of the next one.
+            starts.iter_mut().for_each(|start| *start += first);
+        });
         Self { shape, starts, items, places }
     }
 
     /// Calls `visit` once for each entry of every cell that the ball touches: a superset of those inside.
     pub fn visit_ball(&self, center: Vec3, radius: f32, mut visit: impl FnMut(u32, Vec3)) {
+        self.visit_runs(center, radius, |run| {
+            for (&item, &place) in self.items[run.clone()].iter().zip(&self.places[run]) {
+                visit(item, place);
+            }
+        });
+    }
+
+    /// The entries inside the ball, in a buffer that keeps its memory from one query to the next.
+    pub fn find<'a>(&self, center: Vec3, radius: f32, buffer: &'a mut Vec<Found>) -> &'a [Found] {
+        let limit = radius * radius;
+        let mut count = 0;
+        self.visit_runs(center, radius, |run| {
+            if buffer.len() < count + run.len() {
+                buffer.resize(2 * (count + run.len()), Found::default());
+            }
+            let (buffer, mut kept) = (&mut buffer[count..], 0);
+            for (&item, &place) in self.items[run.clone()].iter().zip(&self.places[run]) {
+                let offset = place - center;
+                let squared = offset.dot(offset);
+                // About half are inside, in no order: a branch would be guessed wrong that often.
+                buffer[kept] = Found { item, offset, squared };
+                kept += usize::from(squared <= limit);
+            }
+            count += kept;
+        });
+        &buffer[..count]
+    }
+
+    /// Calls `visit` with the entries of every cell that the ball touches, a few cells at a time.
+    #[inline]
+    fn visit_runs(&self, center: Vec3, radius: f32, mut visit: impl FnMut(Range<usize>)) {
         let reach = Vec3::splat(radius * SLACK + self.shape.cell * 1e-4);
         let low = self.shape.coordinates(center - reach);
         // A query wider than the period would meet its own cells again.
@@ -122,23 +191,31 @@ impl Grid {
     }
 
     /// Visits the cells from `first` to `last_x` along x: one run of entries, or two where the period ends between.
-    fn visit_row(&self, first: IVec3, last_x: i32, visit: &mut impl FnMut(u32, Vec3)) {
+    #[inline]
+    fn visit_row(&self, first: IVec3, last_x: i32, visit: &mut impl FnMut(Range<usize>)) {
         let begin = self.shape.index(first);
         let end = self.shape.index(first.with_x(last_x));
-        let mut run = |from: usize, to: usize| {
-            let entries = self.starts[from] as usize..self.starts[to + 1] as usize;
-            for (&item, &place) in self.items[entries.clone()].iter().zip(&self.places[entries]) {
-                visit(item, place);
-            }
-        };
+        let entries =
+            |from: usize, to: usize| self.starts[from] as usize..self.starts[to + 1] as usize;
         if begin <= end {
-            run(begin, end);
+            visit(entries(begin, end));
         } else {
             let row = (1 << self.shape.bits[0]) - 1;
-            run(begin, begin | row);
-            run(end & !row, end);
+            visit(entries(begin, begin | row));
+            visit(entries(end & !row, end));
         }
     }
+}
+
+/// An entry that a query found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Found {
+    /// Its number.
+    pub item: u32,
+    /// Its place relative to the centre of the query.
+    pub offset: Vec3,
+    /// The square of its distance.
+    pub squared: f32,
 }
 
 #[cfg(test)]
@@ -164,6 +241,14 @@ mod tests {
                     assert_eq!(x, positions[i as usize]);
                     found.push(i);
                 });
+                let mut buffer = Vec::new();
+                let within: Vec<u32> =
+                    grid.find(center, radius, &mut buffer).iter().map(|f| f.item).collect();
+                let closer = |i: &&u32| {
+                    let d = positions[**i as usize] - center;
+                    d.dot(d) <= radius * radius
+                };
+                assert_eq!(within, found.iter().filter(closer).copied().collect::<Vec<u32>>());
                 let visits = found.len();
                 found.sort_unstable();
                 found.dedup();

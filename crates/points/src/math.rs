@@ -1,7 +1,8 @@
 //! Vectors and angles. Twin: `shaders/shared/math.wgsl`.
 //!
 //! Every function is the same sequence of + - * / and square roots as its twin: system libraries and drivers differ in
-//! `acos` and `atan2`, never in these.
+//! `acos` and `atan2`, never in these. They are inlined wherever they are called, so that loops over many of them run in
+//! vector registers.
 
 use glam::Vec3;
 
@@ -9,12 +10,14 @@ use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 pub use std::f32::consts::{PI, TAU};
 
 /// `v` with length 1; the zero vector must be kept away by the caller.
+#[inline(always)]
 pub fn unit(v: Vec3) -> Vec3 {
     v * (1.0 / v.dot(v).sqrt())
 }
 
 /// Whether points at this squared distance have a direction to each other, seen at the scale of a radius. Nearer ones
 /// count as being in one place.
+#[inline(always)]
 pub fn is_apart(squared_distance: f32, radius: f32) -> bool {
     squared_distance > radius * radius * 1e-12
 }
@@ -35,38 +38,34 @@ pub fn tangent_frame(n: Vec3) -> (Vec3, Vec3) {
     (e1, n.cross(e1))
 }
 
-/// Arc tangent for t in [0, 1], after Cephes' `atanf`: within 2e-7.
+/// Arc tangent for t in [0, 1], after Cephes' `atanf`: within 2e-7. It chooses between numbers where it could branch.
+#[inline(always)]
 fn atan_unit(t: f32) -> f32 {
     let upper = t > 0.414_213_57;
-    let x = if upper { (t - 1.0) / (t + 1.0) } else { t };
+    let above = if upper { t - 1.0 } else { t };
+    let below = if upper { t + 1.0 } else { 1.0 };
+    let x = above / below;
     let z = x * x;
     let p = ((0.080_537_446 * z - 0.138_776_85) * z + 0.199_777_11) * z - 0.333_329_5;
     let a = p * z * x + x;
-    if upper { a + FRAC_PI_4 } else { a }
+    a + if upper { FRAC_PI_4 } else { 0.0 }
 }
 
 /// Angle of the direction (x, y) in [0, 2π], counter-clockwise from the x axis; 0 for the zero vector.
+#[inline(always)]
 pub fn direction_angle(y: f32, x: f32) -> f32 {
     let ax = x.abs();
     let ay = y.abs();
     let longer = ax.max(ay);
-    if longer == 0.0 {
-        return 0.0;
-    }
-    let mut a = atan_unit(ax.min(ay) / longer);
-    if ay > ax {
-        a = FRAC_PI_2 - a;
-    }
-    if x < 0.0 {
-        a = PI - a;
-    }
-    if y < 0.0 {
-        a = TAU - a;
-    }
-    a
+    let shorter = ax.min(ay);
+    let a = atan_unit(shorter / if longer == 0.0 { 1.0 } else { longer });
+    let a = if ay > ax { FRAC_PI_2 - a } else { a };
+    let a = if x < 0.0 { PI - a } else { a };
+    if y < 0.0 { TAU - a } else { a }
 }
 
 /// Angle between two vectors in [0, π]; 0 if one is zero.
+#[inline(always)]
 pub fn angle_between(u: Vec3, v: Vec3) -> f32 {
     let c = u.cross(v);
     direction_angle(c.dot(c).sqrt(), u.dot(v))

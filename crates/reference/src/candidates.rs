@@ -3,10 +3,11 @@
 //! Most triangles are in the fans of all three corners. They are one candidate, which all of these may insert. It belongs to the
 //! first corner, from the smallest index on, whose fan has the triangle.
 
+use crate::columns::BLOCK;
 use crate::lists::Lists;
 use crate::math::TAU;
 use crate::neighborhood::Rings;
-use crate::pn_triangle;
+use crate::triangles::{self, NewPoints, Triangles};
 use crate::visible::Seen;
 use crate::{Level, NO_POINT};
 use glam::Vec3;
@@ -81,18 +82,18 @@ impl Candidates {
 pub fn candidates(level: &Level, rings: &Rings, params: &RefineParams) -> Candidates {
     let homes = homes(level, rings);
     let (of_slot, corners) = number(level, rings, &homes);
-    let made: Vec<(Vec3, Vec3, f32)> =
-        corners.par_iter().map(|&corners| candidate(level, params, corners)).collect();
     let near = |p| near_radius(level, rings, params, p);
+    let near = (0..level.len()).into_par_iter().map(near).collect();
     let mut result = Candidates {
-        positions: made.iter().map(|c| c.0).collect(),
-        normals: made.iter().map(|c| c.1).collect(),
-        rho: made.iter().map(|c| c.2).collect(),
+        positions: vec![Vec3::ZERO; corners.len()],
+        normals: vec![Vec3::ZERO; corners.len()],
+        rho: vec![0.0; corners.len()],
         first_on_curve: corners.len(),
         corners,
         of_slot,
-        near: (0..level.len()).into_par_iter().map(near).collect(),
+        near,
     };
+    result.find_all(level, params);
     for point in &level.curve_points {
         result.positions.push(point.position);
         result.normals.push(point.normal);
@@ -100,6 +101,31 @@ pub fn candidates(level: &Level, rings: &Rings, params: &RefineParams) -> Candid
         result.corners.push(point.parents);
     }
     result
+}
+
+impl Candidates {
+    /// Finds position, normal and ρ of the candidates of all triangles.
+    fn find_all(&mut self, level: &Level, params: &RefineParams) {
+        let formula = match (params.simplified, params.rules.sliver_normals) {
+            (true, _) => triangles::simplified_points,
+            (false, true) => triangles::new_points,
+            (false, false) => triangles::literal_points,
+        };
+        let chunks = (self.positions.par_chunks_mut(BLOCK))
+            .zip(self.normals.par_chunks_mut(BLOCK))
+            .zip(self.rho.par_chunks_mut(BLOCK))
+            .zip(self.corners.par_chunks(BLOCK));
+        let scratch = || (Triangles::EMPTY, NewPoints::EMPTY);
+        chunks.with_min_len(32).for_each_init(scratch, |(triangles, new), chunk| {
+            let (((positions, normals), rho), corners) = chunk;
+            triangles.gather(level, corners);
+            formula(triangles, params.rules, new);
+            for i in 0..corners.len() {
+                (positions[i], normals[i]) = (new.positions.get(i), new.normals.get(i));
+            }
+            rho.copy_from_slice(&new.rho[..corners.len()]);
+        });
+    }
 }
 
 /// For each slot the slot to which its triangle belongs; [`NO_POINT`] for slots without a triangle.
@@ -173,33 +199,6 @@ fn near_radius(level: &Level, rings: &Rings, params: &RefineParams, p: usize) ->
         farthest = farthest.max(d.dot(d));
     }
     params.lambda1 * radius.min(NATURAL * farthest.sqrt())
-}
-
-/// A triangle that holds no candidate.
-const NONE: (Vec3, Vec3, f32) = (Vec3::ZERO, Vec3::ZERO, -1.0);
-
-/// Position, normal and ρ of the candidate of a triangle.
-fn candidate(level: &Level, params: &RefineParams, corners: [u32; 3]) -> (Vec3, Vec3, f32) {
-    let corners = corners.map(|c| level.corner(c));
-    let position = if params.simplified {
-        pn_triangle::center_of_gravity(corners)
-    } else {
-        pn_triangle::displaced_center(corners)
-    };
-    let rho = pn_triangle::reach(corners, position);
-    if rho == 0.0 {
-        return NONE;
-    }
-    if params.rules.steep_faces && pn_triangle::is_steep(corners, rho) {
-        return NONE;
-    }
-    let normal = if params.simplified {
-        // The triangle must have an area; its curved normal is taken when it is inserted.
-        pn_triangle::flat_normal(corners, rho)
-    } else {
-        pn_triangle::new_normal(corners, rho, params.rules)
-    };
-    normal.map_or(NONE, |normal| (position, normal, rho))
 }
 
 /// The corners of a fan triangle, smallest index first and orientation kept, so that the copies of one triangle in

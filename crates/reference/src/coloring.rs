@@ -3,6 +3,7 @@
 
 use crate::lists::Lists;
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// The class of every point.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,27 +22,26 @@ fn scramble(id: u32) -> u32 {
     x ^ (x >> 16)
 }
 
+/// Ranges of priorities, one after the other: few points of one range are neighbours.
+const RANGES: usize = 32;
+
 /// Gives every point, in the order of priority, the lowest class that none of its neighbours chose before it.
 ///
-/// The kernels reach the same classes in rounds, since a point's choice depends on those before it alone.
+/// A point's choice depends on those before it alone. So the points of a range choose in any order, on all cores, and those with
+/// a neighbour before them that has not chosen yet try again; the kernels do the same.
 pub fn coloring(graph: &Lists) -> Classes {
-    let mut order: Vec<(u32, u32)> =
-        (0..graph.len() as u32).into_par_iter().map(|p| (scramble(p), p)).collect();
-    order.par_sort_unstable_by(|a, b| b.cmp(a));
-    let mut class = vec![NONE_YET; graph.len()];
-    let mut taken = Vec::new();
-    for (_, p) in order {
-        taken.clear();
-        for &q in graph.of(p as usize) {
-            let chosen = class[q as usize] as usize;
-            if chosen != NONE_YET as usize {
-                taken.resize(taken.len().max(chosen + 1), false);
-                taken[chosen] = true;
-            }
+    let points = graph.len() as u32;
+    let range = |&p: &u32| scramble(p) as usize / (1 << 32 >> RANGES.ilog2());
+    let mut ranges = vec![Vec::new(); RANGES];
+    (0..points).for_each(|p| ranges[range(&p)].push(p));
+    let class: Vec<AtomicU32> = (0..points).map(|_| AtomicU32::new(NONE_YET)).collect();
+    for mut waiting in ranges.into_iter().rev() {
+        while !waiting.is_empty() {
+            let chosen = |p: &u32| choose(graph, &class, *p);
+            waiting = waiting.into_par_iter().with_min_len(1024).filter(|p| !chosen(p)).collect();
         }
-        let lowest = taken.iter().position(|&t| !t).unwrap_or(taken.len());
-        class[p as usize] = lowest as u32;
     }
+    let class: Vec<u32> = class.into_iter().map(AtomicU32::into_inner).collect();
     let mut members: Vec<Vec<u32>> = Vec::new();
     for (p, &class) in (0..).zip(&class) {
         members.resize_with(members.len().max(class as usize + 1), Vec::new);
@@ -52,6 +52,29 @@ pub fn coloring(graph: &Lists) -> Classes {
 
 /// Of points that have not chosen.
 const NONE_YET: u32 = u32::MAX;
+
+/// Gives a point its class, if all neighbours before it have theirs.
+fn choose(graph: &Lists, class: &[AtomicU32], p: u32) -> bool {
+    let (priority, neighbors) = (scramble(p), graph.of(p as usize));
+    let before = |&&q: &&u32| scramble(q) > priority;
+    let mut taken = 0u64;
+    for &q in neighbors.iter().filter(before) {
+        let class = class[q as usize].load(Relaxed);
+        if class == NONE_YET {
+            return false;
+        }
+        taken |= 1u64.checked_shl(class).unwrap_or(0);
+    }
+    let mut lowest = taken.trailing_ones();
+    // More classes than bits are rare.
+    let is_taken =
+        |own: u32| neighbors.iter().filter(before).any(|&q| class[q as usize].load(Relaxed) == own);
+    while lowest >= u64::BITS && is_taken(lowest) {
+        lowest += 1;
+    }
+    class[p as usize].store(lowest, Relaxed);
+    true
+}
 
 #[cfg(test)]
 mod tests {

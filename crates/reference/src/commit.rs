@@ -1,31 +1,74 @@
 //! The next level: old points with their new radii, then the inserted ones. Twin: `shaders/commit.wgsl`.
 
 use crate::Level;
-use crate::pn_triangle;
+use crate::candidates::Candidates;
+use crate::columns::BLOCK;
 use crate::refine::LevelState;
-use surfine_points::RefineParams;
+use crate::triangles::{NewPoints, Triangles, displaced_points};
+use glam::Vec3;
+use rayon::prelude::*;
+use surfine_points::{RefineParams, Rules};
 
 /// Appends the inserted candidates to the level, in their order, and returns the corners of their triangles.
 pub fn commit(level: &mut Level, state: &LevelState, params: &RefineParams) -> Vec<[u32; 3]> {
     let LevelState { candidates, insertion, covers, .. } = state;
-    let mut parents = Vec::new();
     let larger = |(a, b): (&f32, &f32)| a.max(*b);
     level.radii = insertion.radii.iter().zip(&covers.radii).map(larger).collect();
-    for c in (0..candidates.len()).filter(|&c| insertion.is_inserted(c)) {
-        let (mut position, mut normal) = (candidates.positions[c], candidates.normals[c]);
-        if params.simplified && c < candidates.first_on_curve {
-            // Section 7, simplification 4: the displacement is computed for inserted points only.
-            let corners = candidates.corners[c].map(|corner| level.corner(corner));
-            position = pn_triangle::displaced_center(corners);
-            // The candidate has the normal of the flat triangle.
-            normal =
-                pn_triangle::new_normal(corners, candidates.rho[c], params.rules).unwrap_or(normal);
-        }
-        parents.push(candidates.corners[c]);
-        level.positions.push(position);
-        level.normals.push(normal);
-        level.radii.push(insertion.candidate_radii[c].max(covers.candidate_radii[c]));
-    }
+    let all = (0..candidates.len() as u32).into_par_iter();
+    let inserted: Vec<u32> = all.filter(|&c| insertion.is_inserted(c as usize)).collect();
+    let (positions, normals) = new_points(level, candidates, params, &inserted);
+    level.positions.par_extend(positions);
+    level.normals.par_extend(normals);
+    let inserted = inserted.par_iter().map(|&c| c as usize);
+    let radius = |c: usize| insertion.candidate_radii[c].max(covers.candidate_radii[c]);
+    level.radii.par_extend(inserted.clone().map(radius));
     level.end_step();
-    parents
+    inserted.map(|c| candidates.corners[c]).collect()
+}
+
+/// Positions and normals of the inserted candidates as points of the next level.
+fn new_points(
+    level: &Level,
+    candidates: &Candidates,
+    params: &RefineParams,
+    inserted: &[u32],
+) -> (Vec<Vec3>, Vec<Vec3>) {
+    let own = |&c: &u32| (candidates.positions[c as usize], candidates.normals[c as usize]);
+    let (mut positions, mut normals): (Vec<Vec3>, Vec<Vec3>) = inserted.par_iter().map(own).unzip();
+    if params.simplified {
+        // Section 7, simplification 4: the displacement is computed for inserted points only. The points on curves, which come
+        // last, are in their places.
+        let smooth = inserted.partition_point(|&c| (c as usize) < candidates.first_on_curve);
+        let chunks = positions[..smooth].par_chunks_mut(BLOCK);
+        chunks
+            .zip(normals[..smooth].par_chunks_mut(BLOCK))
+            .zip(inserted.par_chunks(BLOCK))
+            .for_each(|((positions, normals), inserted)| {
+                displace(level, candidates, params.rules, inserted, positions, normals);
+            });
+    }
+    (positions, normals)
+}
+
+/// Displaces some points. Their candidates have the normals of the flat triangles, which stay where the curved ones have none.
+fn displace(
+    level: &Level,
+    candidates: &Candidates,
+    rules: Rules,
+    inserted: &[u32],
+    positions: &mut [Vec3],
+    normals: &mut [Vec3],
+) {
+    let (mut triangles, mut new) = (Triangles::EMPTY, NewPoints::EMPTY);
+    let mut corners = [[0; 3]; BLOCK];
+    for (i, &c) in inserted.iter().enumerate().take(positions.len()) {
+        (corners[i], new.rho[i]) = (candidates.corners[c as usize], candidates.rho[c as usize]);
+    }
+    triangles.gather(level, &corners[..positions.len()]);
+    displaced_points(&triangles, rules, &mut new);
+    for (i, (position, normal)) in positions.iter_mut().zip(normals).enumerate() {
+        let curved = new.normals.get(i);
+        *position = new.positions.get(i);
+        *normal = if curved == Vec3::ZERO { *normal } else { curved };
+    }
 }

@@ -8,13 +8,13 @@
 //! Both happen only within `max(λ1 r, |x - p| + λ2 ρ_x)` of a point p with candidates x: the corners of all candidates there
 //! count as being in conflict with p. That is more than needed (docs/algorithm.md says how much), and needs no look at pairs of candidates.
 
-use crate::Level;
 use crate::candidates::Candidates;
 use crate::insertion::COVER;
 use crate::lists::Lists;
 use crate::neighborhood::Rings;
 use crate::visible::{View, same_side};
-use surfine_points::{Grid, RefineParams};
+use crate::{Level, NO_POINT};
+use surfine_points::{Found, Grid, RefineParams};
 
 /// Widens what lists must hold, so that rounding can't lose an entry.
 const SLACK: f32 = 1.0 + 1e-5;
@@ -36,36 +36,43 @@ pub fn conflicts(
     candidate_grid: &Grid,
     params: &RefineParams,
 ) -> Conflicts {
-    let (around, found) = Lists::pair(
+    let (around, known) = Lists::pair(
         level.len(),
-        || (),
-        |(), p, around, found| {
+        || Scratch { found: Vec::new(), met_by: vec![NO_POINT; level.len()] },
+        |Scratch { found, met_by }, p, around, known| {
             let reach = Reach::of(level, rings, candidates, params, p);
             let Reach { largest, conflicts, .. } = reach;
-            let (center, known) = (level.seen(p), found.len());
+            let center = level.seen(p);
             let view = View::new(level, p, largest, params.rules);
-            candidate_grid.visit_ball(center.position, largest.max(conflicts), |c, x| {
-                let d = x - center.position;
-                let d2 = d.dot(d);
+            met_by[p] = p as u32;
+            for near in candidate_grid.find(center.position, largest.max(conflicts), found) {
+                let c = near.item as usize;
                 // Points on curves are there before all others: nobody has them.
-                if d2 <= conflicts * conflicts && (c as usize) < candidates.first_on_curve {
-                    for q in candidates.corners[c as usize] {
-                        if q as usize != p && !found[known..].contains(&q) {
-                            found.push(q);
+                if near.squared <= conflicts * conflicts && c < candidates.first_on_curve {
+                    for q in candidates.corners[c] {
+                        if std::mem::replace(&mut met_by[q as usize], p as u32) != p as u32 {
+                            known.push(q);
                         }
                     }
                 }
-                let within = reach.of_candidate(params.lambda2 * candidates.rho[c as usize]);
-                if d2 <= within * within {
-                    let other = candidates.seen(c as usize, level);
-                    if same_side(params.rules, other.normal, center.normal) && view.sees(other) {
-                        around.push(c);
-                    }
+                let within = reach.of_candidate(params.lambda2 * candidates.rho[c]);
+                if near.squared <= within * within
+                    && same_side(params.rules, candidates.normals[c], center.normal)
+                    && view.as_ref().is_none_or(|view| view.sees(candidates.seen(c, level)))
+                {
+                    around.push(near.item);
                 }
-            });
+            }
         },
     );
-    Conflicts { around, graph: symmetric(&found) }
+    Conflicts { around, graph: symmetric(&known) }
+}
+
+/// What a thread uses again for the next point.
+struct Scratch {
+    found: Vec<Found>,
+    /// The last point that met each point.
+    met_by: Vec<u32>,
 }
 
 /// How far what bears on a point may be.

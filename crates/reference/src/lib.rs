@@ -4,17 +4,22 @@
 //! bytes. So it computes in f32, in the order of operations of the kernels, even where Rust would rather do otherwise.
 //! `docs/algorithm.md` gives the reading of the paper and what was measured for each stage.
 
+mod angles;
+mod ball;
 pub mod boundary;
 pub mod candidates;
 pub mod coloring;
+mod columns;
 pub mod commit;
 pub mod conflicts;
+mod fan;
 pub mod insertion;
 pub mod lists;
 pub mod neighborhood;
 pub mod next_ring;
 pub mod pn_triangle;
 mod refine;
+mod triangles;
 pub mod visible;
 
 pub use surfine_points::math;

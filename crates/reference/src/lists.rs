@@ -1,6 +1,7 @@
 //! Lists that belong to points, one after the other in memory.
 
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Points whose lists one thread makes before it takes the next ones.
 const CHUNK: usize = 1024;
@@ -37,15 +38,30 @@ impl<T: Copy + Default + Send + Sync> Lists<T> {
         scratch: impl Fn() -> S + Sync,
         make: impl Fn(&mut S, usize, &mut Vec<T>, &mut Vec<U>) + Sync,
     ) -> (Self, Lists<U>) {
+        Self::in_chunks(points, scratch, |scratch, points, one, other| {
+            for p in points {
+                make(scratch, p, &mut one.items, &mut other.items);
+                one.end();
+                other.end();
+            }
+        })
+    }
+
+    /// Makes two lists for each point, those of many points at once: `make` appends and ends them.
+    pub(crate) fn in_chunks<U: Copy + Default + Send + Sync, S>(
+        points: usize,
+        scratch: impl Fn() -> S + Sync,
+        make: impl Fn(&mut S, Range<usize>, &mut Chunk<T>, &mut Chunk<U>) + Sync,
+    ) -> (Self, Lists<U>) {
+        let init = || (scratch(), (0, 0));
         let chunks: Vec<(Chunk<T>, Chunk<U>)> = (0..points.div_ceil(CHUNK))
             .into_par_iter()
-            .map_init(&scratch, |scratch, chunk| {
-                let (mut one, mut other) = (Chunk::default(), Chunk::default());
-                for point in chunk * CHUNK..((chunk + 1) * CHUNK).min(points) {
-                    make(scratch, point, &mut one.items, &mut other.items);
-                    one.ends.push(one.items.len() as u32);
-                    other.ends.push(other.items.len() as u32);
-                }
+            .map_init(init, |(scratch, entries), chunk| {
+                // As many as the last chunk of the thread had, and some more.
+                let (mut one, mut other) = (Chunk::new(entries.0), Chunk::new(entries.1));
+                let own = chunk * CHUNK..((chunk + 1) * CHUNK).min(points);
+                make(scratch, own, &mut one, &mut other);
+                *entries = (one.items.len() * 9 / 8, other.items.len() * 9 / 8);
                 (one, other)
             })
             .collect();
@@ -71,10 +87,20 @@ impl<T: Copy + Default + Send + Sync> Lists<T> {
 }
 
 /// The lists of some points: where each ends, and their entries.
-#[derive(Default)]
-struct Chunk<T> {
+pub(crate) struct Chunk<T> {
     ends: Vec<u32>,
-    items: Vec<T>,
+    pub(crate) items: Vec<T>,
+}
+
+impl<T> Chunk<T> {
+    fn new(entries: usize) -> Self {
+        Self { ends: Vec::with_capacity(CHUNK), items: Vec::with_capacity(entries) }
+    }
+
+    /// Ends the list of a point.
+    pub(crate) fn end(&mut self) {
+        self.ends.push(self.items.len() as u32);
+    }
 }
 
 impl<T> Lists<T> {
@@ -89,13 +115,43 @@ impl<T> Lists<T> {
     }
 
     /// Where the entries of a point's list are.
-    pub fn range(&self, p: usize) -> std::ops::Range<usize> {
+    pub fn range(&self, p: usize) -> Range<usize> {
         self.starts[p] as usize..self.starts[p + 1] as usize
     }
 
     /// The list of a point.
     pub fn of(&self, p: usize) -> &[T] {
         &self.items[self.range(p)]
+    }
+}
+
+/// The entries that fit, in a buffer that keeps its memory. It writes all and counts those that fit: where about half of them do, a
+/// branch would be guessed wrong often.
+pub(crate) fn choose<'a>(
+    list: &[u32],
+    fits: impl Fn(u32) -> bool,
+    buffer: &'a mut Vec<u32>,
+) -> &'a [u32] {
+    if buffer.len() < list.len() {
+        buffer.resize(list.len(), 0);
+    }
+    let mut count = 0;
+    for &entry in list {
+        buffer[count] = entry;
+        count += usize::from(fits(entry));
+    }
+    &buffer[..count]
+}
+
+/// Sorts a short list.
+pub(crate) fn insertion_sort<T: Copy>(list: &mut [T], precedes: impl Fn(&T, &T) -> bool) {
+    for i in 1..list.len() {
+        let (entry, mut place) = (list[i], i);
+        while place > 0 && precedes(&entry, &list[place - 1]) {
+            list[place] = list[place - 1];
+            place -= 1;
+        }
+        list[place] = entry;
     }
 }
 

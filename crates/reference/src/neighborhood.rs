@@ -1,16 +1,17 @@
 //! One-ring neighbourhoods (section 4). Twins: `shaders/neighborhood_*.wgsl`.
 
 use crate::Level;
-use crate::lists::Lists;
+use crate::ball::{Ball, Center, DOUBT, Members, OUT, Pairs, SURE, Verdict};
+use crate::columns::{BLOCK, vectorized};
+use crate::lists::{Chunk, Lists, insertion_sort};
 use crate::math::{TAU, direction_angle, is_apart};
-use crate::pn_triangle::geodesic_distance;
 use crate::visible::View;
 use glam::Vec3;
+use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
-use surfine_points::{Grid, Neighborhood, RefineParams, Rules};
+use surfine_points::{Found, Grid, Neighborhood, RefineParams, Rules};
 
-/// Largest badness of a neighbour: 1, and a margin because regular grids give exactly that.
-pub const WORST_BADNESS: f32 = 1.001;
+pub use crate::ball::WORST_BADNESS;
 
 /// Cosine of 150°: points whose normals differ more are no neighbours, though eq. 6 lets exactly opposite ones pass.
 pub const OPPOSITE: f32 = -0.866_025_4;
@@ -47,7 +48,7 @@ impl Rings {
     }
 
     /// The slots of a point.
-    pub fn slots(&self, p: usize) -> std::ops::Range<usize> {
+    pub fn slots(&self, p: usize) -> Range<usize> {
         self.lists.range(p)
     }
 
@@ -62,100 +63,112 @@ impl Rings {
     }
 }
 
-/// A member of `N^E` seen from the centre, lengths in units of the centre's radius.
-pub(crate) struct Neighbor {
-    pub(crate) id: u32,
-    /// Whether it may lie on another sheet: then it is no neighbour unless a gap stays open.
-    is_doubtful: bool,
-    /// The vector whose fuzzy plane is tested: `q'_i - p` (eq. 9) in the tangent frame for the accurate neighbourhood,
-    /// `p_i - p` for the fuzzy one.
-    offset: Vec3,
-    /// Orthogonal projection `q_i`, up to a positive factor: only its direction counts.
-    pub(crate) x: f32,
-    pub(crate) y: f32,
-}
-
-impl Neighbor {
-    /// A neighbour at offset `d` on the tangent plane of the first normal's point; `None` where it has no direction there.
-    pub(crate) fn new(
-        id: u32,
-        d: Vec3,
-        (e1, e2): (Vec3, Vec3),
-        inverse: f32,
-        [normal, other]: [Vec3; 2],
-        params: &RefineParams,
-    ) -> Option<Self> {
-        let (x, y) = (d.dot(e1), d.dot(e2));
-        let q2 = x * x + y * y;
-        if q2 <= 1e-12 * d.dot(d) {
-            return None;
-        }
-        if params.effective_neighborhood() == Neighborhood::Fuzzy {
-            let (x, y) = (x * inverse, y * inverse);
-            return Some(Self { id, is_doubtful: false, offset: d * inverse, x, y });
-        }
-        let s = (geodesic_distance(d, normal, other) * inverse) / q2.sqrt();
-        let (x, y) = (x * s, y * s);
-        Some(Self { id, is_doubtful: false, offset: Vec3::new(x, y, 0.0), x, y })
-    }
-}
+/// Points whose neighbourhoods are found together.
+const BATCH: usize = 32;
 
 /// Computes the one-ring of every point.
 pub fn neighborhood(level: &Level, grid: &Grid, params: &RefineParams) -> Rings {
     let ball_neighbors = AtomicU64::new(0);
-    let lists = Lists::make(level.len(), Scratch::default, |scratch, p, ring| {
-        let size = consistent_ball(level, grid, params, p, &mut scratch.ball);
-        ball_neighbors.fetch_add(size, Relaxed);
-        one_ring(scratch, params);
-        ring.extend(&scratch.ring);
-    });
+    let filter = Filter::new(params);
+    let (lists, _) = Lists::in_chunks(
+        level.len(),
+        Scratch::default,
+        |scratch, points, rings, _: &mut Chunk<()>| {
+            let mut size = 0;
+            for first in points.clone().step_by(BATCH) {
+                let batch = first..(first + BATCH).min(points.end);
+                size += find_balls(level, grid, batch.clone(), scratch);
+                scratch.members.project(filter.fuzzy);
+                scratch.judge(params.rules);
+                let mut begin = 0;
+                for (rank, p) in batch.enumerate() {
+                    let end = scratch.ends[rank];
+                    one_ring(level, p, begin..end, scratch, &filter);
+                    begin = end;
+                    rings.items.extend(&scratch.ring);
+                    rings.end();
+                }
+            }
+            ball_neighbors.fetch_add(size, Relaxed);
+        },
+    );
     Rings { lists, ball_neighbors: ball_neighbors.into_inner() }
 }
 
-/// What a thread uses again for the next point.
+/// What decides on the members of a neighbourhood.
+struct Filter {
+    rules: Rules,
+    fuzzy: bool,
+    sin_theta_f: f32,
+}
+
+impl Filter {
+    fn new(params: &RefineParams) -> Self {
+        Self {
+            rules: params.rules,
+            fuzzy: params.effective_neighborhood() == Neighborhood::Fuzzy,
+            sin_theta_f: params.sin_theta_f(),
+        }
+    }
+}
+
+/// What a thread uses again for the next points.
 #[derive(Default)]
 struct Scratch {
-    ball: Vec<Neighbor>,
+    found: Vec<Found>,
+    /// `N^E` of each point of the batch, one after the other.
+    members: Members,
+    /// Where the members of each point end.
+    ends: Vec<usize>,
     kept: Vec<bool>,
     back: Vec<usize>,
     ring: Vec<RingEntry>,
 }
 
-/// Finds `N^E` (eq. 7) without the pairs that eq. 6 rejects; returns its size before that.
-fn consistent_ball(
-    level: &Level,
-    grid: &Grid,
-    params: &RefineParams,
-    p: usize,
-    ball: &mut Vec<Neighbor>,
-) -> u64 {
-    let (center, normal, radius) = (level.positions[p], level.normals[p], level.radii[p]);
-    let frame = level.frame(p);
-    let inverse = 1.0 / radius;
-    let view = View::new(level, p, radius, params.rules);
-    let mut size = 0;
-    ball.clear();
-    grid.visit_ball(center, radius, |id, position| {
-        let d = position - center;
-        let d2 = d.dot(d);
-        // Coincident points have no direction to each other: they are no neighbours.
-        if id as usize == p || d2 > radius * radius || !is_apart(d2, radius) {
-            return;
+/// Finds `N^E` (eq. 7) of each point of a batch, and returns the sum of their sizes.
+fn find_balls(level: &Level, grid: &Grid, batch: Range<usize>, scratch: &mut Scratch) -> u64 {
+    scratch.members.clear();
+    scratch.ends.clear();
+    for p in batch {
+        let center = Center::of(level, p);
+        let Center { position, radius, .. } = center;
+        for found in grid.find(position, radius, &mut scratch.found) {
+            // Coincident points have no direction to each other, nor has a point to itself: they are no neighbours.
+            if is_apart(found.squared, radius) {
+                let other = level.normals[found.item as usize];
+                scratch.members.push(found.item, &center, found.offset, other);
+            }
         }
-        size += 1;
-        let other = level.normals[id as usize];
-        let u = d * (1.0 / d2.sqrt());
-        if consistent(u, normal, other, params.rules) && view.sees(level.seen(id as usize)) {
-            let is_doubtful = is_doubtful(u, normal, other, params.rules);
-            let neighbor = Neighbor::new(id, d, frame, inverse, [normal, other], params);
-            ball.extend(neighbor.map(|n| Neighbor { is_doubtful, ..n }));
+        scratch.ends.push(scratch.members.len());
+    }
+    scratch.members.len() as u64
+}
+
+impl Scratch {
+    /// Applies eq. 6 to all members.
+    fn judge(&mut self, rules: Rules) {
+        let Members { pairs, verdicts, .. } = &mut self.members;
+        for (pairs, verdicts) in pairs.iter().zip(verdicts) {
+            judge(pairs, rules, verdicts);
         }
-    });
-    size
+    }
+}
+
+vectorized! {
+    fn judge(pairs: &Pairs, rules: Rules, verdicts: &mut [Verdict; BLOCK]) {
+        for (i, verdict) in verdicts.iter_mut().enumerate() {
+            let (d, normal, other) = pairs.get(i);
+            let u = d * (1.0 / d.dot(d).sqrt());
+            let sure = if is_doubtful(u, normal, other, rules) { DOUBT } else { SURE };
+            let is_out = (*verdict == OUT) | !consistent(u, normal, other, rules);
+            *verdict = if is_out { OUT } else { sure };
+        }
+    }
 }
 
 /// Eq. 6, printed inverted: whether neither point lies in the cone of apex the other and axis `n0 + n1`. `u` is the unit
 /// vector between them.
+#[inline(always)]
 fn consistent(u: Vec3, n0: Vec3, n1: Vec3, rules: Rules) -> bool {
     let cosine = n0.dot(n1);
     if rules.opposite_pairs && cosine < OPPOSITE {
@@ -167,6 +180,7 @@ fn consistent(u: Vec3, n0: Vec3, n1: Vec3, rules: Rules) -> bool {
 }
 
 /// Whether a pair that passes is doubtful: a step between two sheets rather than a slope of one.
+#[inline(always)]
 fn is_doubtful(u: Vec3, n0: Vec3, n1: Vec3, rules: Rules) -> bool {
     let along = (n0 + n1).dot(u).abs();
     let beyond = along > DOUBTFUL * (1.0 + n0.dot(n1)) + 1e-6;
@@ -174,32 +188,56 @@ fn is_doubtful(u: Vec3, n0: Vec3, n1: Vec3, rules: Rules) -> bool {
 }
 
 /// Removes the members that lie behind others (eq. 8) and sorts the rest around the centre.
-fn one_ring(Scratch { ball, kept, back, ring }: &mut Scratch, params: &RefineParams) {
-    let stays = |i: usize| !ball[i].is_doubtful && !is_behind(ball, i, params.sin_theta_f());
-    kept.clear();
-    kept.extend((0..ball.len()).map(stays));
-    if params.rules.natural_neighbors {
-        let natural =
-            |i: &usize| !kept[*i] && is_in_open_gap(ball, kept, *i) && is_natural(ball, *i);
-        back.clear();
-        back.extend((0..ball.len()).filter(natural));
-        back.iter().for_each(|&i| kept[i] = true);
+fn one_ring(level: &Level, p: usize, own: Range<usize>, scratch: &mut Scratch, filter: &Filter) {
+    let Scratch { members, kept, back, ring, .. } = scratch;
+    if let Some(view) = View::new(level, p, level.radii[p], filter.rules) {
+        for i in own.clone() {
+            let verdict = &mut members.verdicts[i / BLOCK][i % BLOCK];
+            if *verdict != OUT && !view.sees(level.seen(members.ids[i] as usize)) {
+                *verdict = OUT;
+            }
+        }
     }
-    let entry = |i: usize| {
-        let Neighbor { id, x, y, .. } = ball[i];
-        RingEntry { id, angle: direction_angle(y, x) }
-    };
+    let ball = members.ball(own, filter.fuzzy, filter.sin_theta_f);
+    kept.clear();
+    kept.extend((0..ball.len()).map(|i| ball.is_neighbor(i)));
+    sort_ring(ball, kept, ring);
+    if filter.rules.natural_neighbors && has_open_gap(ring) {
+        let comes_back = |i: &usize| {
+            let may = ball.verdicts[*i] != OUT && !kept[*i];
+            may && is_in_open_gap(ball, kept, *i) && is_natural(ball, *i)
+        };
+        back.clear();
+        back.extend((0..ball.len()).filter(comes_back));
+        back.iter().for_each(|&i| kept[i] = true);
+        sort_ring(ball, kept, ring);
+    }
+}
+
+/// The kept members by angle, ties by index.
+fn sort_ring(ball: Ball<'_>, kept: &[bool], ring: &mut Vec<RingEntry>) {
     ring.clear();
-    ring.extend((0..ball.len()).filter(|&i| kept[i]).map(entry));
-    ring.sort_unstable_by(|a, b| a.angle.total_cmp(&b.angle).then(a.id.cmp(&b.id)));
+    for (i, _) in kept.iter().enumerate().filter(|(_, kept)| **kept) {
+        ring.push(RingEntry { id: ball.ids[i], angle: ball.angle[i] });
+    }
+    insertion_sort(ring, |a, b| a.angle < b.angle || (a.angle == b.angle && a.id < b.id));
+}
+
+/// Whether two entries that follow each other may leave an open gap: whether anything may come back.
+fn has_open_gap(ring: &[RingEntry]) -> bool {
+    // Angles between members and angles of members differ by some roundings.
+    let open = OPEN_GAP - 1e-4;
+    let angle = |i: usize| ring[i].angle;
+    let wraps = ring.is_empty() || angle(0) + TAU - angle(ring.len() - 1) >= open;
+    wraps || (1..ring.len()).any(|i| angle(i) - angle(i - 1) >= open)
 }
 
 /// Whether the kept members next to member `i` on both sides leave a gap that may miss a neighbour.
-fn is_in_open_gap(ball: &[Neighbor], kept: &[bool], i: usize) -> bool {
+fn is_in_open_gap(ball: Ball<'_>, kept: &[bool], i: usize) -> bool {
     let (mut after, mut before) = (TAU, TAU);
-    for (other, _) in ball.iter().zip(kept).filter(|(_, kept)| **kept) {
-        let along = ball[i].x * other.x + ball[i].y * other.y;
-        let across = ball[i].x * other.y - ball[i].y * other.x;
+    for j in (0..ball.len()).filter(|&j| kept[j]) {
+        let along = ball.x[i] * ball.x[j] + ball.y[i] * ball.y[j];
+        let across = ball.x[i] * ball.y[j] - ball.y[i] * ball.x[j];
         after = after.min(direction_angle(across, along));
         before = before.min(direction_angle(-across, along));
     }
@@ -208,18 +246,16 @@ fn is_in_open_gap(ball: &[Neighbor], kept: &[bool], i: usize) -> bool {
 
 /// Whether member `i` is a natural neighbour of the centre on its tangent plane: whether a piece of their bisector, no
 /// farther from its middle than the radius, is nearer to both than to every other member.
-fn is_natural(ball: &[Neighbor], i: usize) -> bool {
-    let (x, y) = (ball[i].x, ball[i].y);
+fn is_natural(ball: Ball<'_>, i: usize) -> bool {
+    let (x, y) = (ball.x[i], ball.y[i]);
     // Places on the bisector are q/2 + t (-y, x).
     let mut high = 1.0 / (x * x + y * y).sqrt();
     let mut low = -high;
-    for (j, other) in ball.iter().enumerate() {
-        let along = x * other.x + y * other.y;
-        let across = x * other.y - y * other.x;
-        let room = 0.5 * ((other.x * other.x + other.y * other.y) - along);
-        if j == i {
-            continue;
-        }
+    for j in (0..ball.len()).filter(|&j| j != i && ball.verdicts[j] != OUT) {
+        let (xj, yj) = (ball.x[j], ball.y[j]);
+        let along = x * xj + y * yj;
+        let across = x * yj - y * xj;
+        let room = 0.5 * ((xj * xj + yj * yj) - along);
         if across > 0.0 {
             high = high.min(room / across);
         } else if across < 0.0 {
@@ -229,39 +265,4 @@ fn is_natural(ball: &[Neighbor], i: usize) -> bool {
         }
     }
     low < high
-}
-
-/// Whether the badness `w_i` (eq. 8) of member `i` is above 1: it lies behind its successors and predecessors.
-///
-/// The maximum is taken over signed squares of `sin α_ij`, which order the same and need no root per pair. It only
-/// rises, so the first values that are too large decide.
-pub(crate) fn is_behind(ball: &[Neighbor], i: usize, sin_theta_f: f32) -> bool {
-    let (mut successor, mut predecessor) = (-2.0f32, -2.0f32);
-    for (j, other) in ball.iter().enumerate() {
-        let c = ball[i].offset - other.offset;
-        let product = other.offset.dot(other.offset) * c.dot(c);
-        if i == j || other.is_doubtful || product == 0.0 {
-            continue;
-        }
-        let along = other.offset.dot(c);
-        let sin_squared = along * along.abs() / product;
-        // An exactly collinear point counts as successor.
-        let succeeds = ball[i].x * other.y - ball[i].y * other.x >= 0.0;
-        let side = if succeeds { &mut successor } else { &mut predecessor };
-        if sin_squared > *side {
-            *side = sin_squared;
-            let badness =
-                plane_badness(successor, sin_theta_f) + plane_badness(predecessor, sin_theta_f);
-            if badness > WORST_BADNESS {
-                return true;
-            }
-        }
-    }
-    false
-}
-
-/// `w_ij` from the signed square of `sin α_ij`; 0 for an empty set, which passes -2.
-fn plane_badness(sin_squared: f32, sin_theta_f: f32) -> f32 {
-    let sine = if sin_squared < 0.0 { -(-sin_squared).sqrt() } else { sin_squared.sqrt() };
-    if sine < -sin_theta_f { 0.0 } else { 0.5 * (sine / sin_theta_f + 1.0) }
 }

@@ -5,12 +5,15 @@
 //! old ring and the new points nearby go through the filter of section 4, and what is left must be within the radii, of
 //! the point and of the members alike.
 
-use crate::insertion::{COVER, Insertion, Stage};
-use crate::math::{PI, TAU, direction_angle, is_apart};
-use crate::neighborhood::{Neighbor, is_behind};
+use crate::ball::{Center, Members};
+use crate::insertion::{COVER, Insertion, Stage, raise};
+use crate::lists::{choose, insertion_sort};
+use crate::math::{PI, TAU, is_apart};
 use glam::Vec3;
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use std::ops::Range;
+use std::sync::atomic::AtomicU32;
+use surfine_points::Neighborhood;
 
 /// Radii that the next level's rings ask for, 0 where they ask for none.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,16 +24,19 @@ pub struct Covers {
     pub candidate_radii: Vec<f32>,
 }
 
+/// Points whose rings are found together.
+const BATCH: usize = 32;
+
 /// Finds the radii that cover the next level's rings; none if the rule is off.
 pub fn next_ring(stage: Stage<'_>, insertion: &Insertion) -> Covers {
     let points = stage.level.len();
     let zeros = |count| (0..count).map(|_| AtomicU32::new(0)).collect();
     let covers: Vec<AtomicU32> = zeros(points + stage.candidates.len());
     if stage.params.rules.next_ring {
-        (0..points).into_par_iter().for_each_init(Scratch::default, |scratch, p| {
-            gather(stage, insertion, p, scratch);
-            keep_ring(stage, scratch);
-            cover_ring(&scratch.ring, stage.level.record(p).is_some(), p, &covers);
+        let batches = (0..points.div_ceil(BATCH)).into_par_iter();
+        batches.with_min_len(8).for_each_init(Scratch::default, |scratch, batch| {
+            let batch = batch * BATCH..((batch + 1) * BATCH).min(points);
+            cover_rings(stage, insertion, batch, scratch, &covers);
         });
     }
     let mut radii: Vec<f32> =
@@ -39,82 +45,115 @@ pub fn next_ring(stage: Stage<'_>, insertion: &Insertion) -> Covers {
     Covers { radii, candidate_radii }
 }
 
-/// What a thread uses again for the next point.
+/// What a thread uses again for the next points.
 #[derive(Default)]
 struct Scratch {
-    ball: Vec<Neighbor>,
-    /// The place of each member of the ball relative to the centre.
-    offsets: Vec<Vec3>,
+    /// What may be on the next rings of a batch: old points by index, then candidates.
+    members: Members,
+    /// Where the members of each point end.
+    ends: Vec<usize>,
+    /// New points within the new radius of a point.
+    near: Vec<u32>,
     ring: Vec<Member>,
 }
 
-/// A member of the next ring: old points by index, then candidates.
+/// A member of the next ring.
 #[derive(Clone, Copy)]
 struct Member {
     id: u32,
     offset: Vec3,
     angle: f32,
+    /// The square of the largest distance that it must cover.
+    squared: f32,
 }
 
-/// The members of the old ring, and the new points within the new radius, on the tangent plane of the centre.
+/// Covers the next rings of a batch of points.
+fn cover_rings(
+    stage: Stage<'_>,
+    insertion: &Insertion,
+    batch: Range<usize>,
+    scratch: &mut Scratch,
+    covers: &[AtomicU32],
+) {
+    let Stage { level, params, .. } = stage;
+    let (fuzzy, sin_theta_f) =
+        (params.effective_neighborhood() == Neighborhood::Fuzzy, params.sin_theta_f());
+    scratch.members.clear();
+    scratch.ends.clear();
+    for p in batch.clone() {
+        gather(stage, insertion, p, scratch);
+        scratch.ends.push(scratch.members.len());
+    }
+    scratch.members.project(fuzzy);
+    let mut begin = 0;
+    for (p, &end) in batch.zip(&scratch.ends) {
+        keep_ring(&mut scratch.members, begin..end, fuzzy, sin_theta_f, &mut scratch.ring);
+        cover_ring(&mut scratch.ring, level.record(p).is_some(), p, covers);
+        begin = end;
+    }
+}
+
+/// The members of the old ring, and the new points within the new radius.
 fn gather(stage: Stage<'_>, insertion: &Insertion, p: usize, scratch: &mut Scratch) {
-    let Stage { level, rings, candidates, conflicts, params } = stage;
-    let (center, normal, radius) = (level.positions[p], level.normals[p], level.radii[p]);
-    let (frame, inverse) = (level.frame(p), 1.0 / radius);
-    scratch.ball.clear();
-    scratch.offsets.clear();
+    let Stage { level, rings, candidates, conflicts, .. } = stage;
+    let center = Center::of(level, p);
+    let members = &mut scratch.members;
     let mut add = |id: u32, d: Vec3, other: Vec3| {
-        if is_apart(d.dot(d), radius)
-            && let Some(neighbor) = Neighbor::new(id, d, frame, inverse, [normal, other], params)
-        {
-            scratch.ball.push(neighbor);
-            scratch.offsets.push(d);
+        if is_apart(d.dot(d), center.radius) {
+            members.push(id, &center, d, other);
         }
     };
     for entry in rings.ring(p) {
         let i = entry.id as usize;
-        add(entry.id, level.positions[i] - center, level.normals[i]);
+        add(entry.id, level.positions[i] - center.position, level.normals[i]);
     }
-    let new_radius = insertion.radii[p];
-    for &c in conflicts.around.of(p) {
+    let limit = insertion.radii[p] * insertion.radii[p];
+    let is_near = |c: u32| {
+        let d = candidates.positions[c as usize] - center.position;
+        insertion.is_inserted(c as usize) & (d.dot(d) <= limit)
+    };
+    for &c in choose(conflicts.around.of(p), is_near, &mut scratch.near) {
         let i = c as usize;
-        let d = candidates.positions[i] - center;
-        if insertion.is_inserted(i) && d.dot(d) <= new_radius * new_radius {
-            add(level.len() as u32 + c, d, candidates.normals[i]);
-        }
+        let d = candidates.positions[i] - center.position;
+        add(level.len() as u32 + c, d, candidates.normals[i]);
     }
 }
 
 /// Removes the members that lie behind others (section 4) and sorts the rest around the centre.
-fn keep_ring(stage: Stage<'_>, Scratch { ball, offsets, ring }: &mut Scratch) {
-    let sin_theta_f = stage.params.sin_theta_f();
+fn keep_ring(
+    members: &mut Members,
+    own: Range<usize>,
+    fuzzy: bool,
+    sin_theta_f: f32,
+    ring: &mut Vec<Member>,
+) {
     ring.clear();
-    for (i, (neighbor, &offset)) in ball.iter().zip(&*offsets).enumerate() {
-        if !is_behind(ball, i, sin_theta_f) {
-            let angle = direction_angle(neighbor.y, neighbor.x);
-            ring.push(Member { id: neighbor.id, offset, angle });
-        }
+    let ball = members.ball(own, fuzzy, sin_theta_f);
+    for i in (0..ball.len()).filter(|&i| ball.is_neighbor(i)) {
+        let (id, offset) = (ball.ids[i], ball.offset(i));
+        ring.push(Member { id, offset, angle: ball.angle[i], squared: offset.dot(offset) });
     }
-    ring.sort_unstable_by(|a, b| a.angle.total_cmp(&b.angle).then(a.id.cmp(&b.id)));
+    insertion_sort(ring, |a, b| a.angle < b.angle || (a.angle == b.angle && a.id < b.id));
 }
 
 /// The point covers the members, they cover it and, over gaps below π, each other. `on_curve` says that the sheet ends at
 /// the centre.
-fn cover_ring(ring: &[Member], on_curve: bool, p: usize, covers: &[AtomicU32]) {
-    let cover = |id: u32, d: Vec3| {
-        let radius = COVER * d.dot(d).sqrt();
-        covers[id as usize].fetch_max(radius.to_bits(), Relaxed);
-    };
-    for (i, member) in ring.iter().enumerate() {
-        cover(p as u32, member.offset);
-        cover(member.id, member.offset);
+fn cover_ring(ring: &mut [Member], on_curve: bool, p: usize, covers: &[AtomicU32]) {
+    let farthest = ring.iter().map(|member| member.squared).fold(0.0, f32::max);
+    raise(&covers[p], COVER * farthest.sqrt());
+    for i in 0..ring.len() {
         let last = i + 1 == ring.len();
-        let next = ring[if last { 0 } else { i + 1 }];
+        let after = if last { 0 } else { i + 1 };
+        let (member, next) = (ring[i], ring[after]);
         let gap = (if last { next.angle + TAU } else { next.angle }) - member.angle;
         if gap < PI && !(on_curve && last) {
             let side = next.offset - member.offset;
-            cover(member.id, side);
-            cover(next.id, side);
+            let squared = side.dot(side);
+            ring[i].squared = ring[i].squared.max(squared);
+            ring[after].squared = ring[after].squared.max(squared);
         }
+    }
+    for member in ring {
+        raise(&covers[member.id as usize], COVER * member.squared.sqrt());
     }
 }

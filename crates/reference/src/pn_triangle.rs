@@ -18,6 +18,7 @@ pub const FLAT: f32 = 1e-12;
 
 /// `b_210 - p_0` (eq. 2): a third of the edge `d` leaving a corner of normal `n`, turned into the tangent plane there
 /// with its length kept. Zero if the edge is along the normal.
+#[inline(always)]
 pub fn tangent(d: Vec3, n: Vec3) -> Vec3 {
     let d2 = d.dot(d);
     let projected = d - n * d.dot(n);
@@ -30,12 +31,14 @@ pub fn tangent(d: Vec3, n: Vec3) -> Vec3 {
 }
 
 /// Geodesic distance (eq. 4) over the edge `d` from a point of normal `n0` to one of normal `n1`.
+#[inline(always)]
 pub fn geodesic_distance(d: Vec3, n0: Vec3, n1: Vec3) -> f32 {
     let middle = (d + tangent(-d, n1)) - tangent(d, n0);
     0.666_666_7 * d.dot(d).sqrt() + middle.dot(middle).sqrt()
 }
 
 /// Curved angle (eq. 5) at the origin between two points with normals, given relative to it.
+#[inline(always)]
 pub fn curved_angle(a: Corner, b: Corner) -> f32 {
     let d = b.position - a.position;
     let b210 = a.position + tangent(d, a.normal);
@@ -55,6 +58,7 @@ struct ControlPolygon {
     t02: Vec3,
 }
 
+#[inline(always)]
 fn control_polygon([a, b, c]: [Corner; 3]) -> ControlPolygon {
     let d1 = b.position - a.position;
     let d2 = c.position - a.position;
@@ -72,21 +76,45 @@ fn control_polygon([a, b, c]: [Corner; 3]) -> ControlPolygon {
 }
 
 /// Centre of gravity of a triangle.
+#[inline(always)]
 pub fn center_of_gravity([a, b, c]: [Corner; 3]) -> Vec3 {
     a.position + ((b.position - a.position) + (c.position - a.position)) * 0.333_333_34
 }
 
 /// The centre of gravity displaced by the smoothing operator φ (eq. 3).
+#[inline(always)]
 pub fn displaced_center(corners: [Corner; 3]) -> Vec3 {
     let t = control_polygon(corners);
     let phi = (t.t01 + t.t10 + t.t12 + t.t21 + t.t20 + t.t02) * 0.166_666_67;
     corners[0].position + ((t.d1 + t.d2) * 0.333_333_34 + phi)
 }
 
+/// The unit vector along a vector; zero for one of no length, which has no direction.
+#[inline(always)]
+fn direction(n: Vec3) -> Vec3 {
+    if n.dot(n) > FLAT { unit(n) } else { Vec3::ZERO }
+}
+
+/// Whether a direction is none.
+#[inline(always)]
+fn is_none(direction: Vec3) -> bool {
+    direction.dot(direction) == 0.0
+}
+
+/// A direction, if it is one.
+fn some(direction: Vec3) -> Option<Vec3> {
+    (!is_none(direction)).then_some(direction)
+}
+
 /// Normal at the centre of the PN triangle: the cross product of the two derivatives (section 3), whose leading
 /// coefficient is 1 and not the printed 7. `None` for a triangle without area. `size` is a length of the order of the
 /// edges: derivatives are taken in its units, so that no product leaves the range of f32.
 pub fn center_normal(corners: [Corner; 3], size: f32) -> Option<Vec3> {
+    some(exact_normal(corners, size))
+}
+
+#[inline(always)]
+fn exact_normal(corners: [Corner; 3], size: f32) -> Vec3 {
     let t = control_polygon(corners);
     // Control points relative to the first corner.
     let b210 = t.t01;
@@ -98,22 +126,25 @@ pub fn center_normal(corners: [Corner; 3], size: f32) -> Option<Vec3> {
     let inverse = 1.0 / size;
     let bu = (((((t.d1 + b120) - b102) + b012) - b210) + (b021 - b201) * 2.0) * inverse;
     let bv = (((((t.d2 + b102) - b120) + b021) - b201) + (b012 - b210) * 2.0) * inverse;
-    let n = bu.cross(bv);
-    if n.dot(n) > FLAT { Some(unit(n)) } else { None }
+    direction(bu.cross(bv))
 }
 
 /// Cosine of 110°: a triangle is steep if its normal is farther from that of a corner.
 pub const STEEP: f32 = -0.342_020_14;
 
 /// Whether the flat triangle turns its back on one of its corners. `size` as in [`center_normal`].
+#[inline(always)]
 pub fn is_steep(corners: [Corner; 3], size: f32) -> bool {
-    flat_normal(corners, size).is_none_or(|n| corners.iter().any(|c| n.dot(c.normal) < STEEP))
+    let n = facing(corners, size);
+    let [a, b, c] = corners.map(|corner| n.dot(corner.normal) < STEEP);
+    // Without the short cuts of `||` many triangles can be asked at once.
+    is_none(n) | a | b | c
 }
 
 /// Normal of a new point; `size` as in [`center_normal`].
 pub fn new_normal(corners: [Corner; 3], size: f32, rules: Rules) -> Option<Vec3> {
     if rules.sliver_normals {
-        safe_normal(corners, size, rules)
+        some(safe_normal(corners, size, rules))
     } else {
         center_normal(corners, size)
     }
@@ -125,22 +156,23 @@ const FAR: f32 = 0.965_925_8;
 const BLEND: f32 = 33.037_24;
 
 /// [`center_normal`], but where that is far from the quadratic normal of the corners (Vlachos et al. 2001, section 3.3)
-/// the latter: in slivers the cross product keeps little but rounding.
-fn safe_normal(corners: [Corner; 3], size: f32, rules: Rules) -> Option<Vec3> {
-    let exact = center_normal(corners, size)?;
-    let smooth = quadratic_normal(corners, size, rules)?;
+/// the latter: in slivers the cross product keeps little but rounding. Zero where there is none.
+#[inline(always)]
+fn safe_normal(corners: [Corner; 3], size: f32, rules: Rules) -> Vec3 {
+    let exact = exact_normal(corners, size);
+    let smooth = quadratic_normal(corners, size, rules);
     let t = ((exact.dot(smooth) - FAR) * BLEND).clamp(0.0, 1.0);
-    let blend = exact * t + smooth * (1.0 - t);
-    Some(unit(blend))
+    let blend = unit(exact * t + smooth * (1.0 - t));
+    if is_none(exact) | is_none(smooth) { Vec3::ZERO } else { blend }
 }
 
-/// Normal at the centre of the quadratic patch of normals; `None` where those of the corners cancel.
-fn quadratic_normal([a, b, c]: [Corner; 3], size: f32, rules: Rules) -> Option<Vec3> {
+/// Normal at the centre of the quadratic patch of normals; zero where those of the corners cancel.
+#[inline(always)]
+fn quadratic_normal([a, b, c]: [Corner; 3], size: f32, rules: Rules) -> Vec3 {
     let corners = (a.normal + b.normal + c.normal) * 0.111_111_11;
     let edge = |a, b| edge_normal(a, b, size, rules);
     let edges = edge(a, b) + edge(b, c) + edge(c, a);
-    let n = corners + edges * 0.222_222_22;
-    if n.dot(n) > FLAT { Some(unit(n)) } else { None }
+    direction(corners + edges * 0.222_222_22)
 }
 
 /// From this share of the bound of eq. 6 on an edge is a step.
@@ -153,35 +185,84 @@ pub const STEP_BLEND: f32 = 5.0;
 /// Normals that both lean the same way along the edge make a step, and the reflection turns by as much to the other way.
 /// That is right for a slope of one sheet; where two sheets were joined for want of samples it makes normals that fit
 /// neither. So the steeper the step, the less is reflected.
+#[inline(always)]
 fn edge_normal(a: Corner, b: Corner, size: f32, rules: Rules) -> Vec3 {
     let sum = a.normal + b.normal;
     let u = (b.position - a.position) * (1.0 / size);
     let u2 = u.dot(u);
-    let mut reflected = sum;
-    if u2 > 0.0 {
-        let along = u.dot(sum);
-        let step = along.abs() / (u2.sqrt() * (1.0 + a.normal.dot(b.normal)) + 1e-6);
-        let blend = ((STEP - step) * STEP_BLEND).clamp(0.0, 1.0);
-        let share = if rules.step_normals { blend } else { 1.0 };
-        reflected = sum - u * (2.0 * share * along / u2);
-    }
-    if reflected.dot(reflected) > FLAT { unit(reflected) } else { Vec3::ZERO }
+    let along = u.dot(sum);
+    let step = along.abs() / (u2.sqrt() * (1.0 + a.normal.dot(b.normal)) + 1e-6);
+    let blend = ((STEP - step) * STEP_BLEND).clamp(0.0, 1.0);
+    let share = if rules.step_normals { blend } else { 1.0 };
+    let reflected = sum - u * (2.0 * share * along / u2);
+    direction(if u2 > 0.0 { reflected } else { sum })
 }
 
 /// Normal of the flat triangle, `None` for one without area; `size` as in [`center_normal`].
-pub fn flat_normal([a, b, c]: [Corner; 3], size: f32) -> Option<Vec3> {
+pub fn flat_normal(corners: [Corner; 3], size: f32) -> Option<Vec3> {
+    some(facing(corners, size))
+}
+
+#[inline(always)]
+fn facing([a, b, c]: [Corner; 3], size: f32) -> Vec3 {
     let inverse = 1.0 / size;
-    let n = ((b.position - a.position) * inverse).cross((c.position - a.position) * inverse);
-    if n.dot(n) > FLAT { Some(unit(n)) } else { None }
+    direction(((b.position - a.position) * inverse).cross((c.position - a.position) * inverse))
 }
 
 /// Largest distance from `x` to the three corners.
+#[inline(always)]
 pub fn reach(corners: [Corner; 3], x: Vec3) -> f32 {
     let squared = |c: Corner| {
         let d = c.position - x;
         d.dot(d)
     };
     squared(corners[0]).max(squared(corners[1])).max(squared(corners[2])).sqrt()
+}
+
+/// Position, normal and ρ of a new point (section 5). The third is -1 where a triangle has none: if it has no area, or is steep.
+pub(crate) type NewPoint = (Vec3, Vec3, f32);
+
+/// The new point of a triangle.
+#[inline(always)]
+pub(crate) fn new_point(corners: [Corner; 3], rules: Rules) -> NewPoint {
+    let position = displaced_center(corners);
+    let rho = reach(corners, position);
+    let normal = safe_normal(corners, rho, rules);
+    let is_steep = rules.steep_faces & is_steep(corners, rho);
+    checked(position, normal, rho, is_steep)
+}
+
+/// [`new_point`] without the rule for slivers.
+#[inline(always)]
+pub(crate) fn literal_point(corners: [Corner; 3], rules: Rules) -> NewPoint {
+    let position = displaced_center(corners);
+    let rho = reach(corners, position);
+    let is_steep = rules.steep_faces & is_steep(corners, rho);
+    checked(position, exact_normal(corners, rho), rho, is_steep)
+}
+
+/// [`new_point`] before it is displaced (section 7, simplification 4): the triangle must have an area, its curved normal is taken
+/// when the point is inserted.
+#[inline(always)]
+pub(crate) fn simplified_point(corners: [Corner; 3], rules: Rules) -> NewPoint {
+    let position = center_of_gravity(corners);
+    let rho = reach(corners, position);
+    let is_steep = rules.steep_faces & is_steep(corners, rho);
+    checked(position, facing(corners, rho), rho, is_steep)
+}
+
+/// A point of [`simplified_point`] after it is displaced; its normal is zero where the curved triangle has none.
+#[inline(always)]
+pub(crate) fn displaced_point(corners: [Corner; 3], rho: f32, rules: Rules) -> NewPoint {
+    let (exact, safe) = (exact_normal(corners, rho), safe_normal(corners, rho, rules));
+    let normal = if rules.sliver_normals { safe } else { exact };
+    (displaced_center(corners), normal, rho)
+}
+
+#[inline(always)]
+fn checked(position: Vec3, normal: Vec3, rho: f32, is_steep: bool) -> NewPoint {
+    let fails = (rho == 0.0) | is_none(normal) | is_steep;
+    if fails { (Vec3::ZERO, Vec3::ZERO, -1.0) } else { (position, normal, rho) }
 }
 
 #[cfg(test)]

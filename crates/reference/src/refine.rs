@@ -10,8 +10,9 @@ use crate::insertion::{Insertion, Order, Stage, insertion};
 use crate::neighborhood::{Rings, neighborhood};
 use crate::next_ring::{Covers, next_ring};
 use std::fmt;
+use std::mem::take;
 use std::time::{Duration, Instant};
-use surfine_features::{Folded, Records, Refinement, check_marks, fold};
+use surfine_features::{Folded, Records, Refinement, check_marks, fold, is_plain};
 use surfine_points::{
     Boundary, Grid, GridShape, Invalid, LevelReport, Ordered, ParamError, PointSet, Progress,
     RefineParams, Refined, add_stage_time,
@@ -110,22 +111,39 @@ pub fn refine_with(
         result.level_radii.extend(keep(&level));
         result.reports.push(report);
     }
-    let new = records.len()..level.len();
-    let refinement = Refinement {
-        positions: level.positions[new.clone()].to_vec(),
-        normals: level.normals[new].to_vec(),
-        radii: level.radii,
-        parents: result.parents,
-        level_sizes: result.level_sizes,
-        level_radii: result.level_radii,
-    };
-    let features = level.curves.map(|curves| curves.features).unwrap_or_default();
-    let folded = fold(points, &records, &features, &refinement, params.boundary.property());
+    let folded = fold_level(points, &records, level, &mut result, params);
     folded.count_points(&mut result.reports);
     let Folded { points, parents, level_sizes, level_radii } = folded;
     let mut refined = Refined { points, parents, level_sizes, level_radii, ..result };
     ordered.restore(input, &mut refined);
     Ok(refined)
+}
+
+/// The points of the last level with their attributes, from its records; takes these and what the result has of them.
+fn fold_level(
+    input: &PointSet,
+    records: &Records,
+    level: Level,
+    result: &mut Refined,
+    params: &RefineParams,
+) -> Folded {
+    let Level { mut positions, mut normals, radii, curves, .. } = level;
+    let (parents, level_sizes) = (take(&mut result.parents), take(&mut result.level_sizes));
+    let level_radii = take(&mut result.level_radii);
+    let features = curves.map(|curves| curves.features).unwrap_or_default();
+    let marks = params.boundary.property();
+    if is_plain(input, &features, marks) {
+        // The level has the unit normals that the input may lack.
+        normals[..input.len()].copy_from_slice(&input.normals);
+        let (attributes, origin) = (input.attributes.clone(), input.origin);
+        let mut points = PointSet { positions, normals, radii, attributes, origin };
+        points.extend_attributes(&parents);
+        return Folded { points, parents, level_sizes, level_radii };
+    }
+    let (positions, normals) =
+        (positions.split_off(records.len()), normals.split_off(records.len()));
+    let refinement = Refinement { positions, normals, radii, parents, level_sizes, level_radii };
+    fold(input, records, &features, &refinement, marks)
 }
 
 /// Times the stages and tells the caller where the run stands.
@@ -228,11 +246,14 @@ fn run_stages(
 /// The points of a level by cell.
 pub fn point_grid(level: &Level) -> Grid {
     let shape = GridShape::fit(&level.positions, &level.radii);
-    Grid::build(shape, level.positions.iter().enumerate().map(|(i, &x)| (i as u32, x)))
+    Grid::sort(shape, &level.positions, |i| i as u32)
 }
 
 /// The existing candidates by cell, in a grid of the same shape as that of the points.
 pub fn candidate_grid(shape: &GridShape, candidates: &Candidates) -> Grid {
+    if candidates.rho.iter().all(|&rho| rho > 0.0) {
+        return Grid::sort(*shape, &candidates.positions, |c| c as u32);
+    }
     let existing = (0..candidates.len()).filter(|&c| candidates.exists(c));
     Grid::build(*shape, existing.map(|c| (c as u32, candidates.positions[c])))
 }

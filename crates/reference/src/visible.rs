@@ -166,7 +166,7 @@ pub fn in_wedge(record: &Record, d: Vec3) -> bool {
 
 /// What one point sees.
 pub(crate) struct View<'a> {
-    curves: Option<&'a Curves>,
+    curves: &'a Curves,
     center: Seen,
     /// Segments that may separate it from points within its reach.
     fences: Vec<u32>,
@@ -176,25 +176,21 @@ pub(crate) struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    /// The view of a point of the level, as far as the radius.
-    pub(crate) fn new(level: &'a Level, p: usize, radius: f32, rules: Rules) -> Self {
+    /// The view of a point of the level, as far as the radius; `None` where there are no curves, and every point sees all others.
+    pub(crate) fn new(level: &'a Level, p: usize, radius: f32, rules: Rules) -> Option<Self> {
+        let curves = level.curves.as_ref()?;
         let center = level.seen(p);
         let mut fences = Vec::new();
-        if let (Some(curves), true) = (&level.curves, rules.separating_segments) {
-            curves.grid.visit_ball(
-                center.position,
-                (AROUND + 0.5) * radius + curves.reach,
-                |s, _| {
-                    fences.push(s);
-                },
-            );
+        if rules.separating_segments {
+            let reach = (AROUND + 0.5) * radius + curves.reach;
+            curves.grid.visit_ball(center.position, reach, |s, _| fences.push(s));
         }
-        Self { curves: level.curves.as_ref(), center, fences, radius, rules }
+        Some(Self { curves, center, fences, radius, rules })
     }
 
     /// Whether it sees a point within the radius.
     pub(crate) fn sees(&self, other: Seen) -> bool {
-        let Some(curves) = self.curves else { return true };
+        let curves = self.curves;
         let d = other.position - self.center.position;
         let d2 = d.dot(d);
         // In the same place there is nothing between.

@@ -1,5 +1,6 @@
 //! The program as its users run it: files in, files out, exit codes and messages.
 
+mod bench;
 mod evaluate;
 mod folder;
 mod holes;

@@ -496,6 +496,12 @@ fn wrong_usage_exits_with_2() {
         [&sample[..], &["1000000000", "-o", "out.ply"]].concat(),
         vec!["sample", "sphere", "-o", "out.ply"],
         vec!["adapters", "x"],
+        vec!["bench", "--sizes", "99"],
+        vec!["bench", "--sizes", "10k,,1M"],
+        vec!["bench", "--sizes", "1k", "--input", "in.ply"],
+        vec!["bench", "--runs", "0"],
+        vec!["bench", "--levels", "0"],
+        vec!["bench", "--backend", "cpu", "--adapter", "x"],
     ]);
     for args in commands {
         let output = folder.run(&args);
@@ -510,7 +516,10 @@ fn help_has_examples() {
     let folder = Folder::new();
     let version = folder.succeed(&["--version"]);
     assert_eq!(version, concat!("surfine ", env!("CARGO_PKG_VERSION"), "\n"));
-    for command in [&["--help"][..], &["help", "refine"], &["adapters", "-h"], &["sample", "-h"]] {
+    let commands = [&["--help"][..], &["help", "refine"]];
+    for command in
+        [&commands[..], &[&["adapters", "-h"], &["bench", "-h"], &["sample", "-h"]]].concat()
+    {
         let help = folder.succeed(command);
         let examples = help.split("Examples:\n").nth(1).expect("there are examples");
         assert!(examples.matches("surfine").count() >= 3, "{help}");

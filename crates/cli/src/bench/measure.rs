@@ -1,0 +1,109 @@
+//! Timed runs of one cloud on one backend.
+
+use std::time::{Duration, Instant};
+use surfine::{Error, LevelReport, PointSet, RefineParams, Refined, Refiner, wgpu};
+use surfine_points::add_stage_time;
+
+/// What is run, and how often it is measured.
+pub(super) struct Plan<'a> {
+    pub(super) points: &'a PointSet,
+    pub(super) params: &'a RefineParams,
+    pub(super) runs: u16,
+    /// Hears which run begins: `warm-up`, `run 2 of 3`.
+    pub(super) tell: &'a dyn Fn(&str),
+}
+
+/// One run.
+pub(super) struct Run {
+    pub(super) time: Duration,
+    /// Sums over the levels.
+    pub(super) stages: Vec<(&'static str, Duration)>,
+}
+
+/// What a backend took for a cloud.
+pub(super) struct Measured {
+    pub(super) refined: Refined,
+    /// The runs from the fastest to the slowest. On a GPU the result stayed there.
+    pub(super) runs: Vec<Run>,
+    /// On a GPU, runs that read the result back.
+    pub(super) read_back: Option<Vec<Run>>,
+}
+
+impl Measured {
+    /// Of all runs, if that before them took no longer: it may have compiled kernels, which larger clouds won't.
+    pub(super) fn time(&self) -> Duration {
+        let runs = self.runs.iter().chain(self.read_back.iter().flatten());
+        median(&self.runs).time + runs.map(|run| run.time).sum::<Duration>()
+    }
+}
+
+/// The median, or the faster of two in the middle: it is a run that took place, so its stages fit its time.
+pub(super) fn median(runs: &[Run]) -> &Run {
+    &runs[(runs.len() - 1) / 2]
+}
+
+pub(super) fn on_cpu(plan: &Plan<'_>) -> Result<Measured, surfine_reference::Error> {
+    let refine = || surfine_reference::refine(plan.points, plan.params);
+    (plan.tell)("warm-up");
+    refine()?;
+    let mut refined = Refined::default();
+    let runs = timed(plan, "", || {
+        // The last result goes first: two are not needed at once, and freeing it is not measured.
+        refined = Refined::default();
+        let begin = Instant::now();
+        refined = refine()?;
+        Ok::<_, surfine_reference::Error>(run(begin, &refined.reports))
+    })?;
+    Ok(Measured { refined, runs, read_back: None })
+}
+
+pub(super) fn on_gpu(plan: &Plan<'_>, refiner: &mut Refiner) -> Result<Measured, Error> {
+    (plan.tell)("warm-up");
+    refiner.refine_on_device(plan.points, plan.params, &mut |_| ())?;
+    let runs = timed(plan, "", || {
+        let begin = Instant::now();
+        let result = refiner.refine_on_device(plan.points, plan.params, &mut |_| ())?;
+        wait(refiner)?;
+        Ok::<_, Error>(run(begin, &result.reports))
+    })?;
+    let mut refined = Refined::default();
+    let read_back = timed(plan, " with the result read back", || {
+        refined = Refined::default();
+        let begin = Instant::now();
+        refined = refiner.refine(plan.points, plan.params)?;
+        Ok::<_, Error>(run(begin, &refined.reports))
+    })?;
+    Ok(Measured { refined, runs, read_back: Some(read_back) })
+}
+
+/// Runs as often as planned, and sorts by time.
+fn timed<E>(
+    plan: &Plan<'_>,
+    how: &str,
+    mut work: impl FnMut() -> Result<Run, E>,
+) -> Result<Vec<Run>, E> {
+    let mut runs = Vec::new();
+    for number in 1..=plan.runs {
+        (plan.tell)(&format!("run {number} of {}{how}", plan.runs));
+        runs.push(work()?);
+    }
+    runs.sort_by_key(|run| run.time);
+    Ok(runs)
+}
+
+fn run(begin: Instant, reports: &[LevelReport]) -> Run {
+    let time = begin.elapsed();
+    let mut stages = Vec::new();
+    for &(stage, time) in reports.iter().flat_map(|report| &report.stages) {
+        add_stage_time(&mut stages, stage, time);
+    }
+    Run { time, stages }
+}
+
+/// The last commands may still run when a result that stays on the device is there.
+fn wait(refiner: &Refiner) -> Result<(), Error> {
+    let gpu = refiner.gpu();
+    let failed =
+        |e: wgpu::PollError| Error::Device { adapter: gpu.name.clone(), message: e.to_string() };
+    gpu.device.poll(wgpu::PollType::wait_indefinitely()).map(|_| ()).map_err(failed)
+}
