@@ -90,9 +90,9 @@ fn reach_of(p: u32) -> Reach {
 fn gather(p: u32, distance: f32) -> u32 {
     let center = points[p].position;
     var size = 0u;
-    let span = ball_span(center, distance);
-    for (var run = 0u; run < span.runs; run++) {
-        let entries = entries_of_run(span, run);
+    var walk = ball_walk(center, distance);
+    while !is_over(walk) {
+        let entries = next_entries(&walk);
         for (var i = entries.x; i < entries.y; i++) {
             let entry = places[i];
             let d = bitcast<vec3<f32>>(entry.xyz) - center;

@@ -22,9 +22,9 @@ const DOUBTFUL_SHARE: f32 = 0.5;
 fn gather_ball(p: u32) -> u32 {
     let center = points[p];
     var size = 0u;
-    let span = ball_span(center.position, center.radius);
-    for (var run = 0u; run < span.runs; run++) {
-        let entries = entries_of_run(span, run);
+    var walk = ball_walk(center.position, center.radius);
+    while !is_over(walk) {
+        let entries = next_entries(&walk);
         for (var i = entries.x; i < entries.y; i++) {
             let entry = places[i];
             let d = bitcast<vec3<f32>>(entry.xyz) - center.position;
@@ -42,9 +42,9 @@ fn gather_ball(p: u32) -> u32 {
 fn count_members(p: u32) -> u32 {
     let center = points[p];
     var size = 0u;
-    let span = ball_span(center.position, center.radius);
-    for (var run = 0u; run < span.runs; run++) {
-        let entries = entries_of_run(span, run);
+    var walk = ball_walk(center.position, center.radius);
+    while !is_over(walk) {
+        let entries = next_entries(&walk);
         for (var i = entries.x; i < entries.y; i++) {
             let entry = places[i];
             let d = bitcast<vec3<f32>>(entry.xyz) - center.position;

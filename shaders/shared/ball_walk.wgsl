@@ -5,47 +5,52 @@
 /// Widens a query a little, so that rounding at a cell's face can't lose an entry.
 const SLACK: f32 = 1.0001;
 
-/// The cells that a ball touches: rows along x, each one run of entries, or two where the period ends inside.
-struct Span {
+/// A walk over the cells that a ball touches: rows along x, each one run of entries, or two where the period ends inside.
+struct BallWalk {
     low: vec3<i32>,
-    last_x: i32,
-    rows_y: u32,
+    high: vec3<i32>,
+    /// Row of the next run.
+    y: i32,
+    z: i32,
     wraps: bool,
-    /// Number of runs.
-    runs: u32,
+    second: bool,
 }
 
-fn ball_span(center: vec3<f32>, radius: f32) -> Span {
+fn ball_walk(center: vec3<f32>, radius: f32) -> BallWalk {
     let reach = vec3(radius * SLACK + params.cell * 1e-4);
-    return span_between(cell_coordinates(center - reach), cell_coordinates(center + reach), params.bits);
+    return walk_between(cell_coordinates(center - reach), cell_coordinates(center + reach), params.bits);
 }
 
-fn span_between(low: vec3<i32>, top: vec3<i32>, bits: vec3<u32>) -> Span {
+fn walk_between(low: vec3<i32>, top: vec3<i32>, bits: vec3<u32>) -> BallWalk {
     // A query wider than the period would meet its own cells again.
     let last = vec3<i32>((vec3(1u) << bits) - vec3(1u));
     let high = min(top, low + last);
-    let rows_y = u32(high.y - low.y + 1);
-    let rows = rows_y * u32(high.z - low.z + 1);
     let wraps = (low.x >> bits.x) != (high.x >> bits.x);
-    return Span(low, high.x, rows_y, wraps, select(rows, 2u * rows, wraps));
+    return BallWalk(low, high, low.y, low.z, wraps, false);
 }
 
-/// The cells of a run: the first one and that after the last.
-fn cells_of_run(span: Span, run: u32, bits: vec3<u32>) -> vec2<u32> {
-    let row = select(run, run >> 1u, span.wraps);
-    let y = span.low.y + i32(row % span.rows_y);
-    let z = span.low.z + i32(row / span.rows_y);
-    let begin = wrapped_index(vec3(span.low.x, y, z), bits);
-    let end = wrapped_index(vec3(span.last_x, y, z), bits);
-    if !span.wraps {
-        return vec2(begin, end + 1u);
-    }
+/// Whether all runs were walked.
+fn is_over(walk: BallWalk) -> bool {
+    return walk.z > walk.high.z;
+}
+
+/// The cells of the next run: the first one and that after the last. Counting costs less than dividing.
+fn next_cells(walk: ptr<function, BallWalk>, bits: vec3<u32>) -> vec2<u32> {
+    let begin = wrapped_index(vec3((*walk).low.x, (*walk).y, (*walk).z), bits);
+    let end = wrapped_index(vec3((*walk).high.x, (*walk).y, (*walk).z), bits);
     let row_mask = (1u << bits.x) - 1u;
-    return select(vec2(begin, (begin | row_mask) + 1u), vec2(end & ~row_mask, end + 1u), (run & 1u) == 1u);
+    let first = select(begin, end & ~row_mask, (*walk).second);
+    let after = select(end + 1u, (begin | row_mask) + 1u, (*walk).wraps & !(*walk).second);
+    let row_is_over = !(*walk).wraps | (*walk).second;
+    let layer_is_over = row_is_over & (*walk).y == (*walk).high.y;
+    (*walk).second = !row_is_over;
+    (*walk).y = select((*walk).y + i32(row_is_over), (*walk).low.y, layer_is_over);
+    (*walk).z += i32(layer_is_over);
+    return vec2(first, after);
 }
 
-/// The entries of a run: the first one and that after the last.
-fn entries_of_run(span: Span, run: u32) -> vec2<u32> {
-    let cells = cells_of_run(span, run, params.bits);
+/// The entries of the next run: the first one and that after the last.
+fn next_entries(walk: ptr<function, BallWalk>) -> vec2<u32> {
+    let cells = next_cells(walk, params.bits);
     return vec2(grid[cells.x], grid[cells.y]);
 }

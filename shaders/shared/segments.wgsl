@@ -26,15 +26,15 @@ fn segment_bits() -> vec3<u32> {
     return vec3(curve_word(4), curve_word(5), curve_word(6));
 }
 
-/// As ball_span.
-fn segment_span(center: vec3<f32>, radius: f32) -> Span {
+/// As ball_walk.
+fn segment_walk(center: vec3<f32>, radius: f32) -> BallWalk {
     let reach = vec3(radius * SLACK + bitcast<f32>(curve_word(7)) * 1e-4);
-    return span_between(segment_cell(center - reach), segment_cell(center + reach), segment_bits());
+    return walk_between(segment_cell(center - reach), segment_cell(center + reach), segment_bits());
 }
 
-/// The entries of a run of segments: the first one and that after the last.
-fn segments_of_run(span: Span, run: u32) -> vec2<u32> {
-    let cells = cells_of_run(span, run, segment_bits());
+/// The entries of the next run of segments: the first one and that after the last.
+fn next_segments(walk: ptr<function, BallWalk>) -> vec2<u32> {
+    let cells = next_cells(walk, segment_bits());
     return vec2(curve_word(curve_word(10) + cells.x), curve_word(curve_word(10) + cells.y));
 }
 

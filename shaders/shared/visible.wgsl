@@ -32,9 +32,9 @@ fn is_near_curves(position: vec3<f32>, radius: f32) -> bool {
     if !with_curves || !separating_segments {
         return false;
     }
-    let span = segment_span(position, (AROUND + 0.5) * radius + longest_half());
-    for (var run = 0u; run < span.runs; run++) {
-        let entries = segments_of_run(span, run);
+    var walk = segment_walk(position, (AROUND + 0.5) * radius + longest_half());
+    while !is_over(walk) {
+        let entries = next_segments(&walk);
         if entries.x < entries.y {
             return true;
         }
@@ -144,9 +144,9 @@ fn is_fenced(center: Seen, other: Seen, d: vec3<f32>, d2: f32) -> bool {
     }
     let middle = center.position + d * 0.5;
     let reach = AROUND * sqrt(d2) + longest_half();
-    let span = segment_span(middle, reach);
-    for (var run = 0u; run < span.runs; run++) {
-        let entries = segments_of_run(span, run);
+    var walk = segment_walk(middle, reach);
+    while !is_over(walk) {
+        let entries = next_segments(&walk);
         for (var i = entries.x; i < entries.y; i++) {
             let s = segment_at(i);
             let ends = segment_side(s, 0u);

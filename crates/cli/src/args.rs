@@ -38,6 +38,7 @@ Examples:
   surfine refine scan.ply -o fine.ply --attribute intensity=nearest --attribute tx,ty,tz=unit
   surfine refine part.ply -o fine.ply --boundary-property rim
   surfine refine scan.ply -o fine.ply --json | jq .points_per_second
+  surfine refine scan.ply -o fine.ply --levels 5 --dry-run   what it would take
 
 The points of IN come first in FILE, in their order and unchanged but for their radii; the new points
 follow level by level. Points on creases have further normals
@@ -170,6 +171,10 @@ pub(crate) struct RefineArgs {
     /// Show how radii and co-cone angles fall from level to level; the GPU backend reads each level back for it
     #[arg(long)]
     pub(crate) stats: bool,
+    /// Write nothing: print about how many points, how much memory, time and disk the refinement would take, and whether
+    /// that fits; it fails if it surely does not. The time comes from a sphere that is refined for a moment
+    #[arg(long)]
+    pub(crate) dry_run: bool,
     /// Number of threads of the CPU backend, 1 to 1024 [default: all cores, or `RAYON_NUM_THREADS`]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,

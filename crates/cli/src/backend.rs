@@ -3,6 +3,7 @@
 use crate::Failure;
 use crate::adapters::is_software;
 use crate::args::{BackendChoice, RefineArgs};
+use crate::need::Need;
 use crate::watch::Watch;
 use std::time::{Duration, Instant};
 use surfine::{Error, Gpu, Mode, PointSet, RefineParams, Refined, Refiner, choose_adapter, wgpu};
@@ -47,51 +48,87 @@ pub(crate) fn start_threads(wanted: Option<u16>) -> Result<(), Failure> {
     builder.build_global().map_err(failed)
 }
 
+/// Where a refinement is to be computed.
+pub(crate) enum Choice {
+    Cpu {
+        /// Why, although a GPU might have been taken.
+        fallback: Option<String>,
+    },
+    Gpu {
+        adapter: wgpu::Adapter,
+        /// Whether the CPU takes over if it fails.
+        or_cpu: bool,
+    },
+}
+
+impl Choice {
+    /// What the arguments ask for. Without a wish it is a hardware GPU if there is one, else the CPU; an adapter that `WGPU_ADAPTER_NAME`
+    /// asks for is taken whatever it is.
+    pub(crate) fn of(args: &RefineArgs) -> Result<Self, Error> {
+        let wanted = args.adapter.as_deref();
+        match args.backend() {
+            BackendChoice::Cpu => Ok(Self::Cpu { fallback: None }),
+            BackendChoice::Gpu => Ok(Self::Gpu { adapter: choose_adapter(wanted)?, or_cpu: false }),
+            BackendChoice::Auto if names_adapter() => {
+                Ok(Self::Gpu { adapter: choose_adapter(None)?, or_cpu: false })
+            }
+            BackendChoice::Auto => Ok(match choose_adapter(None) {
+                Err(error) => Self::instead_of_gpu(&error.to_string()),
+                Ok(adapter) if is_software(&adapter.get_info()) => {
+                    let name = adapter.get_info().name;
+                    let reason =
+                        format!("the GPU adapter {name} is a software one, which is slower");
+                    Self::instead_of_gpu(&reason)
+                }
+                Ok(adapter) => Self::Gpu { adapter, or_cpu: true },
+            }),
+        }
+    }
+
+    fn instead_of_gpu(reason: &str) -> Self {
+        Self::Cpu { fallback: Some(format!("using the CPU: {reason}")) }
+    }
+}
+
+/// Why the CPU is taken after a GPU has failed, unless the CPU would refuse the same.
+pub(crate) fn fallback_after(error: Error) -> Result<String, Error> {
+    match error {
+        Error::Points(_) | Error::Params(_) => Err(error),
+        _ => Ok(format!("using the CPU: the GPU failed: {error}")),
+    }
+}
+
 /// Refines with the backend that the arguments ask for.
 pub(crate) fn compute(
     args: &RefineArgs,
     points: &PointSet,
     watch: &Watch,
 ) -> Result<Computed, Failure> {
-    let params = args.params();
     let begin = Instant::now();
-    let mut computed = match args.backend() {
-        BackendChoice::Cpu => on_cpu(points, &params, watch)?,
-        BackendChoice::Gpu => {
-            let adapter = choose_adapter(args.adapter.as_deref())?;
-            on_gpu(&adapter, points, &params, watch)?
-        }
-        BackendChoice::Auto => on_either(points, &params, watch)?,
-    };
+    let mut computed = compute_on(Choice::of(args)?, points, &args.params(), watch)?;
     computed.setup = begin.elapsed().saturating_sub(computed.refine);
     Ok(computed)
 }
 
-/// A hardware GPU if there is one that can do it, else the CPU. An adapter that `WGPU_ADAPTER_NAME` asks for is taken
-/// whatever it is.
-fn on_either(points: &PointSet, params: &RefineParams, watch: &Watch) -> Result<Computed, Failure> {
-    if std::env::var("WGPU_ADAPTER_NAME").is_ok_and(|name| !name.is_empty()) {
-        return Ok(on_gpu(&choose_adapter(None)?, points, params, watch)?);
-    }
-    let reason = match choose_adapter(None) {
-        Err(error) => error.to_string(),
-        Ok(adapter) if is_software(&adapter.get_info()) => {
-            let name = adapter.get_info().name;
-            format!("the GPU adapter {name} is a software one, which is slower")
-        }
-        Ok(adapter) => match on_gpu(&adapter, points, params, watch) {
-            Ok(computed) => return Ok(computed),
-            // The CPU would refuse them too.
-            Err(error @ (Error::Points(_) | Error::Params(_))) => return Err(error.into()),
-            Err(error) => format!("the GPU failed: {error}"),
+fn compute_on(
+    choice: Choice,
+    points: &PointSet,
+    params: &RefineParams,
+    watch: &Watch,
+) -> Result<Computed, Failure> {
+    let fallback = match choice {
+        Choice::Cpu { fallback } => fallback,
+        Choice::Gpu { adapter, or_cpu } => match on_gpu(&adapter, points, params, watch) {
+            Err(error) if or_cpu => Some(fallback_after(error)?),
+            result => return Ok(result?),
         },
     };
-    let fallback = format!("using the CPU: {reason}");
-    watch.warn(&fallback);
-    Ok(Computed { fallback: Some(fallback), ..on_cpu(points, params, watch)? })
+    fallback.iter().for_each(|fallback| watch.warn(fallback));
+    Ok(Computed { fallback, ..on_cpu(points, params, watch)? })
 }
 
 fn on_cpu(points: &PointSet, params: &RefineParams, watch: &Watch) -> Result<Computed, Failure> {
+    Need::of_cpu(points, params).fits()?.warn(watch);
     let begin = Instant::now();
     let refined =
         surfine_reference::refine_with(points, params, Order::Together, &mut |at| watch.at(at))?;
@@ -108,6 +145,9 @@ fn on_gpu(
     let mut refiner = Refiner::with_gpu(Gpu::open(adapter)?)?;
     let software = is_software(&adapter.get_info());
     let Gpu { mode, name: adapter, .. } = refiner.gpu().clone();
+    if let Ok(fits) = Need::of_gpu(&refiner, points, params)?.fits() {
+        fits.warn(watch);
+    }
     let begin = Instant::now();
     let refined = refiner.refine_with(points, params, &mut |at| watch.at(at))?;
     let backend = Backend::Gpu { adapter, mode, software };
@@ -116,6 +156,9 @@ fn on_gpu(
 
 /// Whether an adapter is taken where the user leaves the choice: a hardware one, or one that `WGPU_ADAPTER_NAME` names.
 pub(crate) fn is_preferred(adapter: &wgpu::Adapter) -> bool {
-    let named = std::env::var("WGPU_ADAPTER_NAME").is_ok_and(|name| !name.is_empty());
-    named || !is_software(&adapter.get_info())
+    names_adapter() || !is_software(&adapter.get_info())
+}
+
+fn names_adapter() -> bool {
+    std::env::var("WGPU_ADAPTER_NAME").is_ok_and(|name| !name.is_empty())
 }

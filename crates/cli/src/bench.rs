@@ -5,7 +5,6 @@ mod compare;
 mod device;
 mod forecast;
 mod measure;
-mod memory;
 mod report;
 mod table;
 

@@ -4,7 +4,7 @@ use crate::args::RefineArgs;
 use crate::backend::{self, Computed};
 use crate::report::{Input, Report, Times};
 use crate::watch::Watch;
-use crate::{Failure, files, fill, print};
+use crate::{Failure, dry_run, files, fill, print};
 use std::time::{Duration, Instant};
 use surfine_points::ply::{self, PlyError, Provenance, Source};
 use surfine_points::{Convergence, Interpolation, PointSet, Values};
@@ -12,6 +12,9 @@ use surfine_points::{Convergence, Interpolation, PointSet, Values};
 pub(crate) fn run(args: &RefineArgs) -> Result<(), Failure> {
     check_paths(args)?;
     backend::start_threads(args.threads)?;
+    if args.dry_run {
+        return dry_run::run(args);
+    }
     let report = refine(args, &Watch::new(args.quiet || args.json))?;
     if args.json {
         print(&format!("{}\n", serde_json::to_string_pretty(&report)?))
@@ -32,12 +35,8 @@ fn check_paths(args: &RefineArgs) -> Result<(), Failure> {
 }
 
 fn refine(args: &RefineArgs, watch: &Watch) -> Result<Report, Failure> {
-    watch.step(format!("reading {}", args.input.display()));
-    let (read, input) = timed(|| ply::read(&args.input));
-    let (mut points, source) = input?;
-    set_attribute_rules(args, &mut points)?;
-    check_boundary_property(args, &points)?;
-    check_attributes(args, &points)?;
+    let (read, input) = timed(|| read(args, watch));
+    let (points, source) = input?;
     let choice = args.fill_holes();
     let (fill, filled) = timed(|| fill::filled(&args.input, &points, &choice, watch));
     let filled = filled?;
@@ -56,6 +55,16 @@ fn refine(args: &RefineArgs, watch: &Watch) -> Result<Report, Failure> {
     let times = Times { read, fill, setup, refine, write, stats };
     let input = Input { points: &points, filled: &filled, source: &source };
     Ok(Report::new(args, input, &computed, levels, times))
+}
+
+/// Reads the input and refuses what does not fit the arguments.
+pub(crate) fn read(args: &RefineArgs, watch: &Watch) -> Result<(PointSet, Source), Failure> {
+    watch.step(format!("reading {}", args.input.display()));
+    let (mut points, source) = ply::read(&args.input)?;
+    set_attribute_rules(args, &mut points)?;
+    check_boundary_property(args, &points)?;
+    check_attributes(args, &points)?;
+    Ok((points, source))
 }
 
 /// Gives the properties the rules that the user asks for.

@@ -62,7 +62,7 @@ impl Buffer {
     /// Makes room for `bytes`; the old content is lost where it grows.
     pub(crate) fn reserve(&mut self, gpu: &Gpu, bytes: u64) -> Result<(), Error> {
         if bytes > self.size() {
-            *self = Self::new(gpu, self.label, with_headroom(gpu, bytes))?;
+            *self = Self::new(gpu, self.label, with_headroom(bytes, gpu.largest_binding()))?;
         }
         Ok(())
     }
@@ -85,9 +85,9 @@ impl Buffer {
     }
 }
 
-/// A quarter more than asked for, as far as the adapter allows it: needs grow from level to level.
-fn with_headroom(gpu: &Gpu, bytes: u64) -> u64 {
-    (bytes + bytes / 4).min(gpu.largest_binding()).max(bytes)
+/// A quarter more than asked for, as far as the adapter's limit allows it: needs grow from level to level.
+pub(crate) fn with_headroom(bytes: u64, limit: u64) -> u64 {
+    bytes.saturating_add(bytes / 4).min(limit).max(bytes)
 }
 
 /// Reads `bytes` bytes from the start of a buffer.

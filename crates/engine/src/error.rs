@@ -40,6 +40,29 @@ pub enum Error {
         /// Name of the adapter.
         adapter: String,
     },
+    /// A step has more points than the device can hold, whatever it finds.
+    #[error(
+        "step {level} of {levels} has {points} points to refine: its buffer of {what} alone needs {need} bytes, more than the \
+         {have} that {adapter} allows in one buffer (about {total} in all): use fewer levels, split the cloud, or use the CPU"
+    )]
+    TooLarge {
+        /// The refinement step, from 1.
+        level: u32,
+        /// How many steps there are.
+        levels: u32,
+        /// Points before the step, each normal of a point on a crease counted.
+        points: usize,
+        /// The largest buffer that the step surely needs.
+        what: &'static str,
+        /// Its bytes.
+        need: u64,
+        /// Bytes allowed.
+        have: u64,
+        /// Bytes of all buffers at the end of the run, about.
+        total: u64,
+        /// Name of the adapter.
+        adapter: String,
+    },
     /// A point has more neighbours than the driver can walk through: software drivers end long loops.
     #[error(
         "vertex {point} has too many neighbours at level {level} ({neighbors} within its radius): {adapter} ends loops \

@@ -20,6 +20,7 @@ mod buffers;
 mod commands;
 pub mod curves;
 mod error;
+mod forecast;
 mod gpu;
 mod kernel;
 mod profile;
@@ -30,6 +31,7 @@ pub mod shaders;
 mod stages;
 
 pub use error::Error;
+pub use forecast::{Forecast, points_by_level};
 pub use gpu::{Gpu, Mode, adapters, choose_adapter};
 pub use kernel::{Kernel, WORKGROUP_SIZE, exact_spirv};
 pub use profile::KernelTime;

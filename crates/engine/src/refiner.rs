@@ -3,6 +3,7 @@
 use crate::buffers::{self, Buffer};
 use crate::commands::Uniforms;
 use crate::curves;
+use crate::forecast::{Forecast, check_step};
 use crate::profile::{KernelTime, Profile};
 use crate::records::{Counters, LEVEL_BITS, Params, Point};
 use crate::scan::Scan;
@@ -145,6 +146,22 @@ impl Refiner {
         &self.gpu
     }
 
+    /// What a refinement will need, about.
+    ///
+    /// # Errors
+    /// As [`Refiner::refine`], as far as that is sure before anything is computed.
+    pub fn forecast(&self, points: &PointSet, params: &RefineParams) -> Result<Forecast, Error> {
+        params.validate()?;
+        points.validate()?;
+        check_marks(points, params)?;
+        let records = Records::split(points)?.len();
+        if params.levels > 0 {
+            check_step(&self.gpu, &self.sizing, params, (1, records))?;
+        }
+        let limit = self.gpu.largest_binding();
+        Ok(Forecast::new(points.len(), records, params, &self.sizing, limit))
+    }
+
     /// Refines a point set and reads the result back.
     ///
     /// # Errors
@@ -211,6 +228,7 @@ impl Refiner {
         let mut counts = CurveCounts::default();
         for level in 1..=params.levels {
             let count = level_sizes[level_sizes.len() - 1];
+            check_step(&self.gpu, &self.sizing, params, (level, count))?;
             let at = Progress { level, levels: params.levels, stage: "", points: count };
             let mut clock = Clock { at, progress, times: Vec::new(), begin: Instant::now() };
             let step =

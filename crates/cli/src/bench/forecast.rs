@@ -1,7 +1,7 @@
 //! Whether a larger cloud is worth the attempt.
 
 use super::measure::Measured;
-use super::memory;
+use crate::memory;
 use std::time::Duration;
 
 /// Time for each backend, where the user did not choose the sizes.

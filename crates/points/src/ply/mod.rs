@@ -15,11 +15,13 @@ mod header;
 mod model;
 mod read;
 mod scalar;
+mod size;
 mod write;
 
 pub use error::PlyError;
 pub use model::read_model;
 pub use read::read;
+pub use size::file_size;
 pub use write::write;
 
 use std::borrow::Cow;

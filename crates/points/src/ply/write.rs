@@ -56,7 +56,7 @@ pub fn write(
 }
 
 /// A property of the output.
-struct Column<'a> {
+pub(super) struct Column<'a> {
     name: &'a str,
     data: Data<'a>,
 }
@@ -117,7 +117,7 @@ fn core_value(points: &PointSet, core: Core, point: usize) -> f32 {
 }
 
 /// The columns in the order of the file, then the attributes that are new.
-fn columns<'a>(points: &'a PointSet, source: &'a Source) -> Vec<Column<'a>> {
+pub(super) fn columns<'a>(points: &'a PointSet, source: &'a Source) -> Vec<Column<'a>> {
     let slots: HashMap<&str, (usize, &Slot)> =
         source.layout.iter().enumerate().map(|(i, slot)| (slot.name.as_str(), (i, slot))).collect();
     let core = |core: Core| {
@@ -145,7 +145,7 @@ fn core_column<'a>(points: &'a PointSet, core: Core, original: Option<&'a [f64]>
     Column { name: core.name(), data: Data::Core { points, core, wide } }
 }
 
-fn provenance_columns(
+pub(super) fn provenance_columns(
     path: &Path,
     points: &PointSet,
     provenance: Provenance<'_>,
@@ -231,7 +231,7 @@ fn check_finite(path: &Path, columns: &[Column<'_>]) -> Result<(), PlyError> {
     Ok(())
 }
 
-fn write_header(
+pub(super) fn write_header(
     out: &mut impl Write,
     columns: &[Column<'_>],
     points: usize,
@@ -250,7 +250,7 @@ fn write_header(
     writeln!(out, "end_header")
 }
 
-fn write_body(
+pub(super) fn write_body(
     out: &mut impl Write,
     columns: &[Column<'_>],
     points: usize,

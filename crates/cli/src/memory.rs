@@ -3,7 +3,7 @@
 use std::fs;
 
 /// Bytes that can be had without swapping: what is free, within what a container allows.
-pub(super) fn available() -> Option<u64> {
+pub(crate) fn available() -> Option<u64> {
     let free = kilobytes("/proc/meminfo", "MemAvailable:")?;
     let of_container = || {
         let value = |name| fs::read_to_string(format!("/sys/fs/cgroup/memory.{name}")).ok();
