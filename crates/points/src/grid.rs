@@ -34,11 +34,14 @@ pub struct Grid {
     pub places: Vec<Vec3>,
 }
 
+/// Cells in mean radii: smaller ones hold fewer entries that are too far, and make more rows to look at.
+const WIDTH: f32 = 1.5;
+
 /// Widens a query a little, so that rounding at a cell's face can't lose an entry.
 const SLACK: f32 = 1.0 + 1e-4;
 
 impl GridShape {
-    /// A grid for points of these radii: cells as large as their harmonic mean, but no less than an eighth of
+    /// A grid for points of these radii: cells [`WIDTH`] times as large as their harmonic mean, but no less than an eighth of
     /// their mean. Where radii differ much, cells that are small for the large ones cost less than cells that hold whole clusters.
     pub fn fit(positions: &[Vec3], radii: &[f32]) -> Self {
         let low = positions.iter().copied().reduce(Vec3::min).unwrap_or(Vec3::ZERO);
@@ -50,7 +53,7 @@ impl GridShape {
         let count = radii.len().max(1) as f64;
         let mean = (count / inverse.max(1e-30)).max(sum / count / 8.0);
         // 2^20 cells along the longest side keep cell coordinates exact in f32.
-        let cell = (mean as f32).max(extent / 1_048_576.0).max(1e-30);
+        let cell = (WIDTH * mean as f32).max(extent / 1_048_576.0).max(1e-30);
         Self::with_cell(low, cell, positions.len())
     }
 
