@@ -41,7 +41,7 @@ const WIDTH: f32 = 1.5;
 const SLACK: f32 = 1.0 + 1e-4;
 
 impl GridShape {
-    /// A grid for points of these radii: cells [`WIDTH`] times as large as their harmonic mean, but no less than an eighth of
+    /// A grid for points of these radii: cells one and a half times as large as their harmonic mean, but no less than an eighth of
     /// their mean. Where radii differ much, cells that are small for the large ones cost less than cells that hold whole clusters.
     pub fn fit(positions: &[Vec3], radii: &[f32]) -> Self {
         let low = positions.iter().copied().reduce(Vec3::min).unwrap_or(Vec3::ZERO);
