@@ -1,7 +1,7 @@
 //! `surfine adapters`.
 
 use crate::args::AdaptersArgs;
-use crate::{Failure, print};
+use crate::{Failure, print, print_json};
 use serde::Serialize;
 use std::fmt::{self, Display, Formatter};
 use surfine::wgpu::{self, AdapterInfo, DeviceType};
@@ -43,7 +43,7 @@ pub(crate) fn run(args: &AdaptersArgs) -> Result<(), Failure> {
         adapters: entries(&adapters(), &chosen),
     };
     if args.json {
-        return print(&format!("{}\n", serde_json::to_string_pretty(&list)?));
+        return print_json(&list);
     }
     print(&text(&list))
 }

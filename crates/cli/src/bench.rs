@@ -11,7 +11,7 @@ mod table;
 use crate::args::{BenchArgs, BenchBackend};
 use crate::report::Params;
 use crate::watch::Watch;
-use crate::{Failure, backend, print};
+use crate::{Failure, backend, print, print_json};
 use clouds::Cloud;
 use device::{Choice, Device};
 use forecast::Forecast;
@@ -26,7 +26,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
         Bench::open(args, &watch)?.report()?
     };
     if args.json {
-        print(&format!("{}\n", serde_json::to_string_pretty(&report)?))?;
+        print_json(&report)?;
     } else {
         print(&report.to_string())?;
     }

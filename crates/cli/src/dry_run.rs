@@ -7,7 +7,7 @@ use crate::args::RefineArgs;
 use crate::backend::{Choice, fallback_after};
 use crate::need::Need;
 use crate::watch::Watch;
-use crate::{Failure, files, fill, print, refine};
+use crate::{Failure, files, fill, refine};
 use pace::Pace;
 use report::{Estimate, Report};
 use surfine::{Error, Gpu, PointSet, RefineParams, Refiner, wgpu};
@@ -15,13 +15,7 @@ use surfine_points::ply;
 
 pub(crate) fn run(args: &RefineArgs) -> Result<(), Failure> {
     let report = report(args, &Watch::new(args.quiet || args.json))?;
-    if args.json {
-        print(&format!("{}\n", serde_json::to_string_pretty(&report)?))
-    } else if args.quiet {
-        Ok(())
-    } else {
-        print(&report.to_string())
-    }
+    refine::print_report(args, &report)
 }
 
 fn report(args: &RefineArgs, watch: &Watch) -> Result<Report, Failure> {

@@ -5,7 +5,7 @@ use crate::paint::heat;
 use crate::painter::Painter;
 use crate::scene::axes;
 use crate::watch::Watch;
-use crate::{Failure, backend, cloud, files, print};
+use crate::{Failure, backend, cloud, files, print, print_json};
 use serde::Serialize;
 use std::path::Path;
 use surfine_evaluate::{Evaluation, Options, Truth, TruthKind, errors, evaluate};
@@ -42,12 +42,11 @@ fn print_measures(
     evaluation: &Evaluation,
     watch: &Watch,
 ) -> Result<(), Failure> {
-    let text = if args.json {
-        format!("{}\n", serde_json::to_string_pretty(&Report::new(args, evaluation))?)
+    if args.json {
+        watch.suspend(|| print_json(&Report::new(args, evaluation)))
     } else {
-        evaluation.report()
-    };
-    watch.suspend(|| print(&text))
+        watch.suspend(|| print(&evaluation.report()))
+    }
 }
 
 /// One line for each section that could not be measured.

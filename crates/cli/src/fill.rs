@@ -2,7 +2,7 @@
 
 use crate::args::{FillArgs, FillChoice};
 use crate::watch::Watch;
-use crate::{Failure, backend, files, print};
+use crate::{Failure, backend, files, print, print_json};
 use serde::Serialize;
 use std::path::Path;
 use surfine_holes::{Fill, Filled, fill_holes};
@@ -24,7 +24,7 @@ pub(crate) fn run(args: &FillArgs) -> Result<(), Failure> {
     ply::write(&args.output, &filled.points, None, &source, files::encoding(args.ascii))?;
     let report = Report::new(args, &points, &source, &filled);
     if args.json {
-        print(&format!("{}\n", serde_json::to_string_pretty(&report)?))
+        print_json(&report)
     } else if args.quiet {
         Ok(())
     } else {

@@ -1,7 +1,7 @@
 //! `surfine holes`.
 
 use crate::args::HolesArgs;
-use crate::{Failure, backend, print};
+use crate::{Failure, backend, print, print_json};
 use serde::Serialize;
 use std::fmt::Write;
 use surfine_holes::{Loop, loops};
@@ -14,7 +14,7 @@ pub(crate) fn run(args: &HolesArgs) -> Result<(), Failure> {
     let input = args.input.display().to_string();
     if args.json {
         let report = Report { input, points: points.len(), loops };
-        return print(&format!("{}\n", serde_json::to_string_pretty(&report)?));
+        return print_json(&report);
     }
     if loops.is_empty() {
         return print(&format!("{input}: {} points, no loops\n", points.len()));

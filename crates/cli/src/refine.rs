@@ -4,7 +4,9 @@ use crate::args::RefineArgs;
 use crate::backend::{self, Computed};
 use crate::report::{Input, Report, Times};
 use crate::watch::Watch;
-use crate::{Failure, dry_run, files, fill, print};
+use crate::{Failure, dry_run, files, fill, print, print_json};
+use serde::Serialize;
+use std::fmt::Display;
 use std::time::{Duration, Instant};
 use surfine_points::ply::{self, PlyError, Provenance, Source};
 use surfine_points::{Convergence, Interpolation, PointSet, Values};
@@ -16,8 +18,16 @@ pub(crate) fn run(args: &RefineArgs) -> Result<(), Failure> {
         return dry_run::run(args);
     }
     let report = refine(args, &Watch::new(args.quiet || args.json))?;
+    print_report(args, &report)
+}
+
+/// Prints what is told of a refinement, as far as the user wants to know.
+pub(crate) fn print_report(
+    args: &RefineArgs,
+    report: &(impl Serialize + Display),
+) -> Result<(), Failure> {
     if args.json {
-        print(&format!("{}\n", serde_json::to_string_pretty(&report)?))
+        print_json(report)
     } else if args.quiet {
         Ok(())
     } else {
