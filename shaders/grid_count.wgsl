@@ -1,5 +1,5 @@
 // grid: counts the points or candidates of each cell, and notes the cell and the rank of each item there.
-// Twin: `Grid::build` in crates/points/src/grid.rs
+// Twin: `Grid::sort` in crates/points/src/grid.rs
 // One invocation per item. dispatch: number of items, words of four from one to the next.
 
 /// Position, and a number that is above zero if the item exists: the radius of a point, ρ of a candidate.

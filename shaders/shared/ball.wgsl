@@ -1,5 +1,5 @@
 // The Euclidean neighbourhood N^E of a point without the pairs that eq. 6 rejects (sections 3 and 4).
-// Twin: `consistent_ball` in crates/reference/src/neighborhood.rs
+// Twins: `find_balls` and `judge` in crates/reference/src/neighborhood.rs, `project` in crates/reference/src/ball.rs
 //
 // Expects what neighborhood.wgsl declares.
 

@@ -1,4 +1,4 @@
-// The candidate that is tried next (section 5). Twins: `closest` and `best_split` in crates/reference/src/insertion.rs
+// The candidate that is tried next (section 5). Twins: `closest` and `best_split` in crates/reference/src/fan.rs
 //
 // Expects what insertion.wgsl and new_ring.wgsl have. Candidates are those of the row OWN.
 

@@ -1,4 +1,4 @@
-// Fuzzy planes (section 4.1, eq. 8). Twin: `is_behind` in crates/reference/src/neighborhood.rs
+// Fuzzy planes (section 4.1, eq. 8). Twins: `worst_sines` and `badness` in crates/reference/src/ball.rs
 //
 // Expects `accurate`, `is_left_out` and rows X, Y and OFFSET of the members, as neighborhood.wgsl has them.
 

@@ -1,4 +1,4 @@
-// The new neighbourhood N' of one point while it is refined. Twin: `Fan` in crates/reference/src/insertion.rs
+// The new neighbourhood N' of one point while it is refined. Twin: `Fan` in crates/reference/src/fan.rs
 //
 // Expects what insertion.wgsl declares. Members keep their number; the row ORDER sorts them by angle.
 

@@ -1,4 +1,4 @@
-// Radii at the next level (section 5, end). Twin: `store_radii` in crates/reference/src/insertion.rs
+// Radii at the next level (section 5, end). Twin: `store_radii` in crates/reference/src/fan.rs
 //
 // Expects `next_radii` and what new_ring.wgsl has.
 

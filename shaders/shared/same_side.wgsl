@@ -1,4 +1,4 @@
-// Sheets that lie close to each other (ours). Twin: `same_side` in crates/reference/src/insertion.rs
+// Sheets that lie close to each other (ours). Twin: `same_side` in crates/reference/src/visible.rs
 
 /// A rule beyond the paper: see `Rules` in crates/points/src/params.rs.
 override own_side: bool = true;

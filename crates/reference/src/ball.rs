@@ -1,4 +1,5 @@
 //! The members of neighbourhoods on the tangent planes of their centres, and the fuzzy planes between them (section 4).
+//! Twins: `ball.wgsl` and `fuzzy_planes.wgsl` in `shaders/shared`.
 
 use crate::Level;
 use crate::angles::direction_angles;
@@ -8,7 +9,7 @@ use glam::Vec3;
 use std::ops::Range;
 
 /// Largest badness of a neighbour: 1, and a margin because regular grids give exactly that.
-pub const WORST_BADNESS: f32 = 1.001;
+const WORST_BADNESS: f32 = 1.001;
 
 /// The centre of a neighbourhood.
 #[derive(Clone, Copy, Default)]

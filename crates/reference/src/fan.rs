@@ -1,4 +1,5 @@
-//! The new neighbourhood N' of one point while it is refined (section 5).
+//! The new neighbourhood N' of one point while it is refined (section 5). Twins: `new_ring.wgsl`, `choice.wgsl`,
+//! `discard.wgsl` and `next_radii.wgsl` in `shaders/shared`.
 
 use crate::angles::{Angles, Directions};
 use crate::ball::Center;

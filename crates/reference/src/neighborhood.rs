@@ -1,4 +1,4 @@
-//! One-ring neighbourhoods (section 4). Twins: `shaders/neighborhood_*.wgsl`.
+//! One-ring neighbourhoods (section 4). Twin: `shaders/neighborhood.wgsl`.
 
 use crate::Level;
 use crate::ball::{Ball, Center, DOUBT, Members, OUT, Pairs, SURE, Verdict};
@@ -10,8 +10,6 @@ use glam::Vec3;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use surfine_points::{Found, Grid, Neighborhood, RefineParams, Rules};
-
-pub use crate::ball::WORST_BADNESS;
 
 /// Cosine of 150°: points whose normals differ more are no neighbours, though eq. 6 lets exactly opposite ones pass.
 pub const OPPOSITE: f32 = -0.866_025_4;

@@ -1,4 +1,4 @@
-//! Point-normal interpolation (section 3). Twin: `shaders/shared/pn_triangle.wgsl`.
+//! Point-normal interpolation (section 3). Twins: `pn_triangle.wgsl` and `new_normal.wgsl` in `shaders/shared`.
 
 use crate::math::{angle_between, unit};
 use glam::Vec3;
@@ -101,18 +101,9 @@ fn is_none(direction: Vec3) -> bool {
     direction.dot(direction) == 0.0
 }
 
-/// A direction, if it is one.
-fn some(direction: Vec3) -> Option<Vec3> {
-    (!is_none(direction)).then_some(direction)
-}
-
 /// Normal at the centre of the PN triangle: the cross product of the two derivatives (section 3), whose leading
-/// coefficient is 1 and not the printed 7. `None` for a triangle without area. `size` is a length of the order of the
+/// coefficient is 1 and not the printed 7. Zero for a triangle without area. `size` is a length of the order of the
 /// edges: derivatives are taken in its units, so that no product leaves the range of f32.
-pub fn center_normal(corners: [Corner; 3], size: f32) -> Option<Vec3> {
-    some(exact_normal(corners, size))
-}
-
 #[inline(always)]
 fn exact_normal(corners: [Corner; 3], size: f32) -> Vec3 {
     let t = control_polygon(corners);
@@ -132,22 +123,23 @@ fn exact_normal(corners: [Corner; 3], size: f32) -> Vec3 {
 /// Cosine of 110°: a triangle is steep if its normal is farther from that of a corner.
 pub const STEEP: f32 = -0.342_020_14;
 
-/// Whether the flat triangle turns its back on one of its corners. `size` as in [`center_normal`].
+/// Whether the flat triangle turns its back on one of its corners. `size` as in [`exact_normal`].
 #[inline(always)]
-pub fn is_steep(corners: [Corner; 3], size: f32) -> bool {
+fn is_steep(corners: [Corner; 3], size: f32) -> bool {
     let n = facing(corners, size);
     let [a, b, c] = corners.map(|corner| n.dot(corner.normal) < STEEP);
     // Without the short cuts of `||` many triangles can be asked at once.
     is_none(n) | a | b | c
 }
 
-/// Normal of a new point; `size` as in [`center_normal`].
+/// Normal of a new point, `None` for a triangle that has none. `size` is a length of the order of the edges.
 pub fn new_normal(corners: [Corner; 3], size: f32, rules: Rules) -> Option<Vec3> {
-    if rules.sliver_normals {
-        some(safe_normal(corners, size, rules))
+    let normal = if rules.sliver_normals {
+        safe_normal(corners, size, rules)
     } else {
-        center_normal(corners, size)
-    }
+        exact_normal(corners, size)
+    };
+    (!is_none(normal)).then_some(normal)
 }
 
 /// Cosine of 15°, and one over its distance from the cosine of 5°: between them a normal blends from the interpolated to
@@ -155,7 +147,7 @@ pub fn new_normal(corners: [Corner; 3], size: f32, rules: Rules) -> Option<Vec3>
 const FAR: f32 = 0.965_925_8;
 const BLEND: f32 = 33.037_24;
 
-/// [`center_normal`], but where that is far from the quadratic normal of the corners (Vlachos et al. 2001, section 3.3)
+/// [`exact_normal`], but where that is far from the quadratic normal of the corners (Vlachos et al. 2001, section 3.3)
 /// the latter: in slivers the cross product keeps little but rounding. Zero where there is none.
 #[inline(always)]
 fn safe_normal(corners: [Corner; 3], size: f32, rules: Rules) -> Vec3 {
@@ -198,11 +190,7 @@ fn edge_normal(a: Corner, b: Corner, size: f32, rules: Rules) -> Vec3 {
     direction(if u2 > 0.0 { reflected } else { sum })
 }
 
-/// Normal of the flat triangle, `None` for one without area; `size` as in [`center_normal`].
-pub fn flat_normal(corners: [Corner; 3], size: f32) -> Option<Vec3> {
-    some(facing(corners, size))
-}
-
+/// Normal of the flat triangle, zero for one without area; `size` as in [`exact_normal`].
 #[inline(always)]
 fn facing([a, b, c]: [Corner; 3], size: f32) -> Vec3 {
     let inverse = 1.0 / size;
@@ -279,7 +267,7 @@ mod tests {
         let corner = |x, y| Corner { position: Vec3::new(x, y, 0.0), normal: Vec3::Z };
         let triangle = [corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0)];
         assert!((displaced_center(triangle) - center_of_gravity(triangle)).length() < 1e-7);
-        assert!((center_normal(triangle, 1.0).expect("it has an area") - Vec3::Z).length() < 1e-6);
+        assert!((exact_normal(triangle, 1.0) - Vec3::Z).length() < 1e-6);
     }
 
     #[test]
@@ -290,7 +278,7 @@ mod tests {
         let (flat, curved) = (1.0 - center_of_gravity(triangle).length(), 1.0 - x.length());
         assert!(curved.abs() < flat / 100.0, "distance {curved}, of the flat triangle {flat}");
         // The printed coefficient 7 turns this normal by a multiple of the bound.
-        let normal = center_normal(triangle, 0.2).expect("it has an area");
+        let normal = exact_normal(triangle, 0.2);
         let outward = if normal.dot(x) < 0.0 { -normal } else { normal };
         assert!(angle_between(outward, x).to_degrees() < 0.02);
     }
@@ -329,7 +317,8 @@ mod tests {
     #[test]
     fn a_triangle_without_area_has_no_normal() {
         let corner = |x| Corner { position: Vec3::new(x, 0.0, 0.0), normal: Vec3::Z };
-        assert_eq!(center_normal([corner(0.0), corner(1.0), corner(3.0)], 1.0), None);
+        let triangle = [corner(0.0), corner(1.0), corner(3.0)];
+        assert_eq!(new_normal(triangle, 1.0, Rules::LITERAL), None);
     }
 
     #[test]

@@ -1,4 +1,5 @@
-//! What a point sees when there are creases and boundaries (section 6). Twin: `shaders/shared/visible.wgsl`.
+//! What a point sees when there are creases and boundaries (section 6). Twins: `visible.wgsl`, `segments.wgsl` and
+//! `same_side.wgsl` in `shaders/shared`.
 //!
 //! The paper splits a crease point's neighbourhood by the most similar normal. That is not enough: eq. 6 never rejects a
 //! pair across an edge of 90°, so fans would cross the crease. Here points see each other only if they lie on one sheet
