@@ -156,7 +156,7 @@ fn insert(points: &PointSet, classes: impl Fn(&Classes) -> Classes, order: Order
     let level = Level::new(&Records::split(points).expect("the points are fit"));
     let params = levels(1);
     let (state, _) = run_level(&level, &params, order, &mut |_| ());
-    assert_eq!(state.classes, coloring(&state.conflicts.graph));
+    assert_eq!(state.classes, coloring(&state.conflicts.before));
     let stage = Stage {
         level: &level,
         rings: &state.rings,

@@ -192,8 +192,8 @@ impl Step {
             records: self.features().map_or(0, |features| features.old as u32),
             arena_words: ARENA_WORDS as u32,
             ring_entries: state.rings.len() as u32,
-            around_entries: (state.conflicts.around.items.len() + state.conflicts.graph.items.len())
-                as u32,
+            around_entries: (state.conflicts.around.items.len()
+                + 2 * state.conflicts.before.items.len()) as u32,
             mirror_links: MIRROR_LINKS as u32,
             ..Params::new(&self.refine).with_grid(&state.grid.shape)
         }
@@ -232,16 +232,16 @@ impl Step {
         for p in 0..self.level.len() {
             let slots = rings.slots(p);
             let around = conflicts.around.of(p).len() as u32;
-            let graph = conflicts.graph.of(p).len() as u32;
+            let before = conflicts.before.of(p).len() as u32;
             fans.push(Fan {
                 slots: [slots.start as u32, slots.len() as u32],
                 near: candidates.near[p],
                 left_over,
                 around: [first, around],
-                // All of them: none is mirrored.
-                conflicts: [graph, graph],
+                // None is mirrored.
+                conflicts: [before, before],
             });
-            first += around + graph;
+            first += around + before;
         }
         fans
     }
@@ -249,7 +249,7 @@ impl Step {
     /// The lists of [`Step::fans`].
     pub(crate) fn around(&self) -> Vec<u32> {
         let conflicts = &self.state.conflicts;
-        let of = |p: usize| [conflicts.around.of(p), conflicts.graph.of(p)].concat();
+        let of = |p: usize| [conflicts.around.of(p), conflicts.before.of(p)].concat();
         (0..self.level.len()).flat_map(of).collect()
     }
 

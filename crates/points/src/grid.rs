@@ -64,6 +64,12 @@ impl GridShape {
         Self { origin, cell, bits: [total.div_ceil(3), (total + 1) / 3, total / 3] }
     }
 
+    /// How far from a ball's centre its cells may be along an axis.
+    #[inline]
+    pub fn reach(&self, radius: f32) -> f32 {
+        radius * SLACK + self.cell * 1e-4
+    }
+
     /// Number of cells in a period.
     pub fn cells(&self) -> usize {
         1 << (self.bits[0] + self.bits[1] + self.bits[2])
@@ -157,35 +163,20 @@ impl Grid {
         });
     }
 
-    /// The entries inside the ball, in a buffer that keeps its memory from one query to the next.
-    pub fn find<'a>(&self, center: Vec3, radius: f32, buffer: &'a mut Vec<Found>) -> &'a [Found] {
-        let limit = radius * radius;
-        let mut count = 0;
-        self.visit_runs(center, radius, |run| {
-            if buffer.len() < count + run.len() {
-                buffer.resize(2 * (count + run.len()), Found::default());
-            }
-            let (buffer, mut kept) = (&mut buffer[count..], 0);
-            for (&item, &place) in self.items[run.clone()].iter().zip(&self.places[run]) {
-                let offset = place - center;
-                let squared = offset.dot(offset);
-                // About half are inside, in no order: a branch would be guessed wrong that often.
-                buffer[kept] = Found { item, offset, squared };
-                kept += usize::from(squared <= limit);
-            }
-            count += kept;
-        });
-        &buffer[..count]
-    }
-
     /// Calls `visit` with the entries of every cell that the ball touches, a few cells at a time.
     #[inline]
-    fn visit_runs(&self, center: Vec3, radius: f32, mut visit: impl FnMut(Range<usize>)) {
-        let reach = Vec3::splat(radius * SLACK + self.shape.cell * 1e-4);
-        let low = self.shape.coordinates(center - reach);
+    fn visit_runs(&self, center: Vec3, radius: f32, visit: impl FnMut(Range<usize>)) {
+        let reach = Vec3::splat(self.shape.reach(radius));
+        self.visit_box(center - reach, center + reach, visit);
+    }
+
+    /// Calls `visit` with the entries of every cell that the box touches, a few cells at a time.
+    #[inline]
+    pub fn visit_box(&self, low: Vec3, high: Vec3, mut visit: impl FnMut(Range<usize>)) {
+        let low = self.shape.coordinates(low);
         // A query wider than the period would meet its own cells again.
         let last = IVec3::from_array(self.shape.bits.map(|b| (1 << b) - 1));
-        let high = self.shape.coordinates(center + reach).min(low.saturating_add(last));
+        let high = self.shape.coordinates(high).min(low.saturating_add(last));
         for z in low.z..=high.z {
             for y in low.y..=high.y {
                 self.visit_row(low.with_y(y).with_z(z), high.x, &mut visit);
@@ -208,17 +199,6 @@ impl Grid {
             visit(entries(end & !row, end));
         }
     }
-}
-
-/// An entry that a query found.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Found {
-    /// Its number.
-    pub item: u32,
-    /// Its place relative to the centre of the query.
-    pub offset: Vec3,
-    /// The square of its distance.
-    pub squared: f32,
 }
 
 #[cfg(test)]
@@ -244,14 +224,6 @@ mod tests {
                     assert_eq!(x, positions[i as usize]);
                     found.push(i);
                 });
-                let mut buffer = Vec::new();
-                let within: Vec<u32> =
-                    grid.find(center, radius, &mut buffer).iter().map(|f| f.item).collect();
-                let closer = |i: &&u32| {
-                    let d = positions[**i as usize] - center;
-                    d.dot(d) <= radius * radius
-                };
-                assert_eq!(within, found.iter().filter(closer).copied().collect::<Vec<u32>>());
                 let visits = found.len();
                 found.sort_unstable();
                 found.dedup();

@@ -18,7 +18,7 @@ pub mod shapes;
 pub use convergence::{Convergence, Spread};
 pub use glam::Vec3;
 pub use glam::{DVec3, UVec3};
-pub use grid::{Found, Grid, GridShape};
+pub use grid::{Grid, GridShape};
 pub use model::{Completed, Model};
 pub use order::Ordered;
 pub use params::{Boundary, Neighborhood, ParamError, RefineParams, Rules};

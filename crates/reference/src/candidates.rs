@@ -130,18 +130,14 @@ impl Candidates {
 
 /// For each slot the slot to which its triangle belongs; [`NO_POINT`] for slots without a triangle.
 fn homes(level: &Level, rings: &Rings) -> Vec<u32> {
-    let homes = Lists::make(
-        level.len(),
-        || (),
-        |(), p, homes| {
-            homes.extend((0..rings.ring(p).len()).map(|i| {
-                match fan_triangle(level, rings, p, i) {
-                    Some(corners) => home(level, rings, corners, rings.slots(p).start + i),
-                    None => NO_POINT,
-                }
-            }));
-        },
-    );
+    let homes = Lists::make(level.len(), |p, homes| {
+        homes.items.extend((0..rings.ring(p).len()).map(|i| {
+            match fan_triangle(level, rings, p, i) {
+                Some(corners) => home(level, rings, corners, rings.slots(p).start + i),
+                None => NO_POINT,
+            }
+        }));
+    });
     homes.items
 }
 
@@ -165,18 +161,13 @@ fn home(level: &Level, rings: &Rings, [a, b, c]: [u32; 3], own: usize) -> u32 {
 
 /// Numbers the triangles by the slots to which they belong: the number of each slot's, and their corners.
 fn number(level: &Level, rings: &Rings, homes: &[u32]) -> (Vec<u32>, Vec<[u32; 3]>) {
-    let triangles = Lists::make(
-        level.len(),
-        || (),
-        |(), p, triangles| {
-            for (i, slot) in
-                rings.slots(p).enumerate().filter(|&(_, slot)| homes[slot] == slot as u32)
-            {
-                let corners = fan_triangle(level, rings, p, i).expect("a home has a triangle");
-                triangles.push((slot as u32, corners));
-            }
-        },
-    );
+    let triangles = Lists::make(level.len(), |p, triangles| {
+        for (i, slot) in rings.slots(p).enumerate().filter(|&(_, slot)| homes[slot] == slot as u32)
+        {
+            let corners = fan_triangle(level, rings, p, i).expect("a home has a triangle");
+            triangles.items.push((slot as u32, corners));
+        }
+    });
     let mut numbers = vec![NO_POINT; rings.len()];
     for (number, &(slot, _)) in (0..).zip(&triangles.items) {
         numbers[slot as usize] = number;

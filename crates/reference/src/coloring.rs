@@ -15,7 +15,7 @@ pub struct Classes {
 }
 
 /// The priority of a point: a bijection of the 32-bit integers without visible order (`lowbias32`, C. Wellons).
-fn scramble(id: u32) -> u32 {
+pub(crate) fn scramble(id: u32) -> u32 {
     let mut x = id;
     x = (x ^ (x >> 16)).wrapping_mul(0x7feb_352d);
     x = (x ^ (x >> 15)).wrapping_mul(0x846c_a68b);
@@ -25,19 +25,19 @@ fn scramble(id: u32) -> u32 {
 /// Ranges of priorities, one after the other: few points of one range are neighbours.
 const RANGES: usize = 32;
 
-/// Gives every point, in the order of priority, the lowest class that none of its neighbours chose before it.
+/// Gives every point, in the order of priority, the lowest class that none of its neighbours `before` it chose.
 ///
 /// A point's choice depends on those before it alone. So the points of a range choose in any order, on all cores, and those with
 /// a neighbour before them that has not chosen yet try again; the kernels do the same.
-pub fn coloring(graph: &Lists) -> Classes {
-    let points = graph.len() as u32;
+pub fn coloring(before: &Lists) -> Classes {
+    let points = before.len() as u32;
     let range = |&p: &u32| scramble(p) as usize / (1 << 32 >> RANGES.ilog2());
     let mut ranges = vec![Vec::new(); RANGES];
     (0..points).for_each(|p| ranges[range(&p)].push(p));
     let class: Vec<AtomicU32> = (0..points).map(|_| AtomicU32::new(NONE_YET)).collect();
     for mut waiting in ranges.into_iter().rev() {
         while !waiting.is_empty() {
-            let chosen = |p: &u32| choose(graph, &class, *p);
+            let chosen = |p: &u32| choose(before.of(*p as usize), &class, *p);
             waiting = waiting.into_par_iter().with_min_len(1024).filter(|p| !chosen(p)).collect();
         }
     }
@@ -54,11 +54,9 @@ pub fn coloring(graph: &Lists) -> Classes {
 const NONE_YET: u32 = u32::MAX;
 
 /// Gives a point its class, if all neighbours before it have theirs.
-fn choose(graph: &Lists, class: &[AtomicU32], p: u32) -> bool {
-    let (priority, neighbors) = (scramble(p), graph.of(p as usize));
-    let before = |&&q: &&u32| scramble(q) > priority;
+fn choose(before: &[u32], class: &[AtomicU32], p: u32) -> bool {
     let mut taken = 0u64;
-    for &q in neighbors.iter().filter(before) {
+    for &q in before {
         let class = class[q as usize].load(Relaxed);
         if class == NONE_YET {
             return false;
@@ -67,8 +65,7 @@ fn choose(graph: &Lists, class: &[AtomicU32], p: u32) -> bool {
     }
     let mut lowest = taken.trailing_ones();
     // More classes than bits are rare.
-    let is_taken =
-        |own: u32| neighbors.iter().filter(before).any(|&q| class[q as usize].load(Relaxed) == own);
+    let is_taken = |own: u32| before.iter().any(|&q| class[q as usize].load(Relaxed) == own);
     while lowest >= u64::BITS && is_taken(lowest) {
         lowest += 1;
     }
@@ -88,12 +85,12 @@ mod tests {
         for i in 0..rim {
             lists.push(vec![0, 1 + (i + 1) % rim, 1 + (i + rim - 1) % rim]);
         }
-        let mut graph = Lists::default();
-        for list in &lists {
-            graph.items.extend(list);
-            graph.starts.push(graph.items.len() as u32);
+        let mut before = Lists::default();
+        for (p, list) in (0..).zip(&lists) {
+            before.items.extend(list.iter().filter(|&&q| scramble(q) > scramble(p)));
+            before.starts.push(before.items.len() as u32);
         }
-        let classes = coloring(&graph);
+        let classes = coloring(&before);
         for (p, list) in lists.iter().enumerate() {
             for &q in list {
                 assert_ne!(classes.class[p], classes.class[q as usize], "{p} {q}");

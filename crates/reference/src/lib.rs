@@ -15,6 +15,7 @@ pub mod conflicts;
 mod fan;
 pub mod insertion;
 pub mod lists;
+mod nearby;
 pub mod neighborhood;
 pub mod next_ring;
 pub mod pn_triangle;

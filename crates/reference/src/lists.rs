@@ -22,55 +22,45 @@ impl<T> Default for Lists<T> {
 }
 
 impl<T: Copy + Default + Send + Sync> Lists<T> {
-    /// Makes the lists of so many points on all cores: `make` appends that of a point. `scratch` makes what a thread keeps from
-    /// point to point.
-    pub fn make<S>(
-        points: usize,
-        scratch: impl Fn() -> S + Sync,
-        make: impl Fn(&mut S, usize, &mut Vec<T>) + Sync,
-    ) -> Self {
-        Self::pair(points, scratch, |s, p, items, _: &mut Vec<()>| make(s, p, items)).0
-    }
-
-    /// Makes two lists for each point at once.
-    pub fn pair<U: Copy + Default + Send + Sync, S>(
-        points: usize,
-        scratch: impl Fn() -> S + Sync,
-        make: impl Fn(&mut S, usize, &mut Vec<T>, &mut Vec<U>) + Sync,
-    ) -> (Self, Lists<U>) {
-        Self::in_chunks(points, scratch, |scratch, points, one, other| {
+    /// Makes the lists of so many points on all cores: `make` appends that of a point.
+    pub(crate) fn make(points: usize, make: impl Fn(usize, &mut Chunk<T>) + Sync) -> Self {
+        let make = |(): &mut (), points: Range<usize>, [lists]: &mut [Chunk<T>; 1]| {
             for p in points {
-                make(scratch, p, &mut one.items, &mut other.items);
-                one.end();
-                other.end();
+                make(p, lists);
+                lists.end();
             }
-        })
+        };
+        let [lists] = Self::in_chunks(points, || (), make);
+        lists
     }
 
-    /// Makes two lists for each point, those of many points at once: `make` appends and ends them.
-    pub(crate) fn in_chunks<U: Copy + Default + Send + Sync, S>(
+    /// Makes some lists for each point, those of many points at once: `make` appends and ends them. `scratch` makes what a thread
+    /// keeps from one call to the next.
+    pub(crate) fn in_chunks<const N: usize, S>(
         points: usize,
         scratch: impl Fn() -> S + Sync,
-        make: impl Fn(&mut S, Range<usize>, &mut Chunk<T>, &mut Chunk<U>) + Sync,
-    ) -> (Self, Lists<U>) {
-        let init = || (scratch(), (0, 0));
-        let chunks: Vec<(Chunk<T>, Chunk<U>)> = (0..points.div_ceil(CHUNK))
+        make: impl Fn(&mut S, Range<usize>, &mut [Chunk<T>; N]) + Sync,
+    ) -> [Self; N] {
+        let init = || (scratch(), [0; N]);
+        let chunks: Vec<[Chunk<T>; N]> = (0..points.div_ceil(CHUNK))
             .into_par_iter()
             .map_init(init, |(scratch, entries), chunk| {
                 // As many as the last chunk of the thread had, and some more.
-                let (mut one, mut other) = (Chunk::new(entries.0), Chunk::new(entries.1));
+                let mut lists = entries.map(Chunk::new);
                 let own = chunk * CHUNK..((chunk + 1) * CHUNK).min(points);
-                make(scratch, own, &mut one, &mut other);
-                *entries = (one.items.len() * 9 / 8, other.items.len() * 9 / 8);
-                (one, other)
+                make(scratch, own, &mut lists);
+                *entries = lists.each_ref().map(|list| list.items.len() * 9 / 8);
+                lists
             })
             .collect();
-        let (one, other): (Vec<_>, Vec<_>) = chunks.into_iter().unzip();
-        (Self::join(&one), Lists::join(&other))
+        std::array::from_fn(|k| Self::join(chunks.iter().map(|lists| &lists[k])))
     }
 
-    fn join(chunks: &[Chunk<T>]) -> Self {
-        let total = chunks.iter().map(|chunk| chunk.items.len()).sum();
+    fn join<'a>(chunks: impl Iterator<Item = &'a Chunk<T>> + Clone) -> Self
+    where
+        T: 'a,
+    {
+        let total = chunks.clone().map(|chunk| chunk.items.len()).sum();
         let mut starts = vec![0];
         let mut items = vec![T::default(); total];
         let (mut rest, mut parts) = (items.as_mut_slice(), Vec::new());
@@ -92,9 +82,18 @@ pub(crate) struct Chunk<T> {
     pub(crate) items: Vec<T>,
 }
 
-impl<T> Chunk<T> {
+impl<T: Copy> Chunk<T> {
     fn new(entries: usize) -> Self {
         Self { ends: Vec::with_capacity(CHUNK), items: Vec::with_capacity(entries) }
+    }
+
+    /// Appends an entry to the list of a point if it is wanted. It is written in any case: where about half of the entries are
+    /// wanted, a branch would be guessed wrong often.
+    #[inline(always)]
+    pub(crate) fn offer(&mut self, entry: T, is_wanted: bool) {
+        let len = self.items.len() + usize::from(is_wanted);
+        self.items.push(entry);
+        self.items.truncate(len);
     }
 
     /// Ends the list of a point.

@@ -3,13 +3,14 @@
 use crate::Level;
 use crate::ball::{Ball, Center, DOUBT, Members, OUT, Pairs, SURE, Verdict};
 use crate::columns::{BLOCK, vectorized};
-use crate::lists::{Chunk, Lists, insertion_sort};
+use crate::lists::{Lists, insertion_sort};
 use crate::math::{TAU, direction_angle, is_apart};
+use crate::nearby::{Marks, Nearby};
 use crate::visible::View;
 use glam::Vec3;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
-use surfine_points::{Found, Grid, Neighborhood, RefineParams, Rules};
+use surfine_points::{Grid, Neighborhood, RefineParams, Rules};
 
 /// Cosine of 150°: points whose normals differ more are no neighbours, though eq. 6 lets exactly opposite ones pass.
 pub const OPPOSITE: f32 = -0.866_025_4;
@@ -68,28 +69,24 @@ const BATCH: usize = 32;
 pub fn neighborhood(level: &Level, grid: &Grid, params: &RefineParams) -> Rings {
     let ball_neighbors = AtomicU64::new(0);
     let filter = Filter::new(params);
-    let (lists, _) = Lists::in_chunks(
-        level.len(),
-        Scratch::default,
-        |scratch, points, rings, _: &mut Chunk<()>| {
-            let mut size = 0;
-            for first in points.clone().step_by(BATCH) {
-                let batch = first..(first + BATCH).min(points.end);
-                size += find_balls(level, grid, batch.clone(), scratch);
-                scratch.members.project(filter.fuzzy);
-                scratch.judge(params.rules);
-                let mut begin = 0;
-                for (rank, p) in batch.enumerate() {
-                    let end = scratch.ends[rank];
-                    one_ring(level, p, begin..end, scratch, &filter);
-                    begin = end;
-                    rings.items.extend(&scratch.ring);
-                    rings.end();
-                }
+    let [lists] = Lists::in_chunks(level.len(), Scratch::default, |scratch, points, [rings]| {
+        let mut size = 0;
+        for first in points.clone().step_by(BATCH) {
+            let batch = first..(first + BATCH).min(points.end);
+            size += find_balls(level, grid, batch.clone(), scratch);
+            scratch.members.project(filter.fuzzy);
+            scratch.judge(params.rules);
+            let mut begin = 0;
+            for (rank, p) in batch.enumerate() {
+                let end = scratch.ends[rank];
+                one_ring(level, p, begin..end, scratch, &filter);
+                begin = end;
+                rings.items.extend(&scratch.ring);
+                rings.end();
             }
-            ball_neighbors.fetch_add(size, Relaxed);
-        },
-    );
+        }
+        ball_neighbors.fetch_add(size, Relaxed);
+    });
     Rings { lists, ball_neighbors: ball_neighbors.into_inner() }
 }
 
@@ -113,7 +110,8 @@ impl Filter {
 /// What a thread uses again for the next points.
 #[derive(Default)]
 struct Scratch {
-    found: Vec<Found>,
+    nearby: Nearby,
+    marks: Marks,
     /// `N^E` of each point of the batch, one after the other.
     members: Members,
     /// Where the members of each point end.
@@ -125,21 +123,24 @@ struct Scratch {
 
 /// Finds `N^E` (eq. 7) of each point of a batch, and returns the sum of their sizes.
 fn find_balls(level: &Level, grid: &Grid, batch: Range<usize>, scratch: &mut Scratch) -> u64 {
-    scratch.members.clear();
-    scratch.ends.clear();
+    let Scratch { nearby, marks, members, ends, .. } = scratch;
+    members.clear();
+    ends.clear();
+    let end = batch.end;
     for p in batch {
         let center = Center::of(level, p);
         let Center { position, radius, .. } = center;
-        for found in grid.find(position, radius, &mut scratch.found) {
+        nearby.look(grid, p..end, |p| (level.positions[p], level.radii[p]));
+        for &i in nearby.in_ball(position, radius, marks) {
+            let (item, offset) = (nearby.items[i as usize], nearby.place(i) - position);
             // Coincident points have no direction to each other, nor has a point to itself: they are no neighbours.
-            if is_apart(found.squared, radius) {
-                let other = level.normals[found.item as usize];
-                scratch.members.push(found.item, &center, found.offset, other);
+            if is_apart(offset.dot(offset), radius) {
+                members.push(item, &center, offset, level.normals[item as usize]);
             }
         }
-        scratch.ends.push(scratch.members.len());
+        ends.push(members.len());
     }
-    scratch.members.len() as u64
+    members.len() as u64
 }
 
 impl Scratch {

@@ -217,7 +217,7 @@ fn run_stages(
         let conflicts = conflicts(level, &rings, &candidates, &candidate_grid, params);
         (candidate_grid, conflicts)
     });
-    let classes = clock.time("coloring", || coloring(&conflicts.graph));
+    let classes = clock.time("coloring", || coloring(&conflicts.before));
     let inputs =
         Stage { level, rings: &rings, candidates: &candidates, conflicts: &conflicts, params };
     let insertion = clock.time("insertion", || insertion(inputs, &classes, order));
