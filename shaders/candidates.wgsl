@@ -3,7 +3,8 @@
 
 @group(0) @binding(2) var<storage, read> points: array<Point>;
 @group(0) @binding(3) var<storage, read_write> all: array<Candidate>;
-@group(0) @binding(4) var<storage, read> curves: array<u32>;
+@group(0) @binding(4) var<storage, read_write> counters: Counters;
+@group(0) @binding(5) var<storage, read> curves: array<u32>;
 
 /// Whether the simplifications of section 7 are made.
 override simplified: bool = false;
@@ -16,12 +17,20 @@ fn candidates(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgro
     }
     if c >= params.triangles {
         add_curve_point(c);
+        note_rho(record_rho(record_of_candidate(c)));
         return;
     }
     all[c].state = FREE;
     if !add_candidate(c) {
         all[c].place = vec4(0.0, 0.0, 0.0, -1.0);
         all[c].normal = vec3(0.0);
+    }
+}
+
+/// Most are no larger than what is known: to look costs less than to write.
+fn note_rho(rho: f32) {
+    if bitcast<u32>(rho) > atomicLoad(&counters.widest) {
+        atomicMax(&counters.widest, bitcast<u32>(rho));
     }
 }
 
@@ -65,6 +74,7 @@ fn add_candidate(c: u32) -> bool {
     }
     all[c].place = vec4(position, rho);
     all[c].normal = normal;
+    note_rho(rho);
     return true;
 }
 

@@ -56,7 +56,7 @@ fn conflicts(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
         return;
     }
     let reach = reach_of(p);
-    let size = gather(p, max(reach.largest, reach.conflicts));
+    let size = gather(p, query_radius(p, reach));
     if !fits(size + 1u) || !store(p, reach, size) {
         fans[p].left_over = CONFLICTS;
         atomicOr(&counters.left_over, CONFLICTS);
@@ -84,6 +84,19 @@ fn reach_of(p: u32) -> Reach {
     reach.largest = COVER * WIDER * max(points[p].radius, reach.own_reach);
     reach.conflicts = WIDER * reach.conflicts;
     return reach;
+}
+
+/// Within which distance a candidate with that discard sphere is of interest: others can neither enter N' nor discard what
+/// might.
+fn reach_of_candidate(p: u32, reach: Reach, sphere: f32) -> f32 {
+    let bears = COVER * WIDER * max(fans[p].near, reach.own_reach + sphere);
+    return min(reach.largest, select(bears, reach.largest, reach.own == 0u));
+}
+
+/// Within this distance are all candidates that may be listed, or in conflict.
+fn query_radius(p: u32, reach: Reach) -> f32 {
+    let widest = params.lambda2 * bitcast<f32>(atomicLoad(&counters.widest));
+    return max(reach_of_candidate(p, reach, widest), reach.conflicts);
 }
 
 /// Lists the candidates within a distance, and returns how many they are, of which no more are listed than fit.

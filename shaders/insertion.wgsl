@@ -65,8 +65,11 @@ fn insertion(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
     }
     open_ring(p);
     gather(p);
-    gather_own(fans[p].slots);
-    complete();
+    gather_own(fans[p].slots, fans[p].near);
+    // Where all candidates are in N', nothing more can be.
+    if ring.own > 0u {
+        complete();
+    }
     store_radii();
     note_cut_loops(p);
 }
@@ -106,23 +109,24 @@ fn gather(p: u32) {
         ring.outer_size += u32(!joins & d2 < ring.radius * ring.radius);
     }
     add_bounds();
-    for (var i = 0u; i < ring.size; i++) {
-        set_number(GAP, i, measured_gap(i));
-    }
 }
 
-/// Lists the candidates of the fan.
-fn gather_own(slots: vec2<u32>) {
+/// Lists the candidates of the fan that are not in N'.
+fn gather_own(slots: vec2<u32>, near: f32) {
     for (var slot = slots.x; slot < slots.x + slots.y; slot++) {
         // Slots without a triangle have one that does not exist.
         let c = of_slot[slot];
-        let there = candidates[min(c, params.candidates - 1u)].place;
+        let at = min(c, params.candidates - 1u);
+        let there = candidates[at].place;
         let d = there.xyz - ring.center;
+        let d2 = dot3(d, d);
+        let is_there = atomicLoad(&candidates[at].state) < dispatch.x;
+        let is_new = is_there & d2 < near * near & is_apart(d2, ring.radius);
         set_word(OWN, ring.own, c);
         set_number(OWN_ANGLE, ring.own, angle_of(d));
         set_vector(OWN_OFFSET, ring.own, d);
-        set_number(OWN_INVERSE, ring.own, 1.0 / sqrt(dot3(d, d)));
-        ring.own += u32(c != NONE & there.w > 0.0);
+        set_number(OWN_INVERSE, ring.own, 1.0 / sqrt(d2));
+        ring.own += u32(c != NONE & there.w > 0.0 & !is_new);
     }
     for (var k = 0u; k < ring.own; k++) {
         let closest = discarded_by_outer(k);
@@ -133,6 +137,9 @@ fn gather_own(slots: vec2<u32>) {
 
 /// Splits the widest gap until none is as wide as θ_c or no candidate is left. Each candidate is tried once.
 fn complete() {
+    for (var i = 0u; i < ring.size; i++) {
+        set_number(GAP, i, measured_gap(i));
+    }
     loop {
         var chosen = NONE;
         if ring.size == 0u {

@@ -5,8 +5,7 @@
 
 /// How many words the rows must hold: the corners of each candidate may be in conflict.
 fn count_members(p: u32) -> u32 {
-    let reach = reach_of(p);
-    let distance = max(reach.largest, reach.conflicts);
+    let distance = query_radius(p, reach_of(p));
     let center = points[p].position;
     var size = 0u;
     var walk = ball_walk(center, distance);
@@ -81,9 +80,7 @@ fn look_around(p: u32, reach: Reach, size: u32) -> Looked {
         // New points on curves are there before all others: nobody has them.
         set_word(CLOSE, conflicting, c);
         conflicting += u32(d2 <= reach.conflicts * reach.conflicts & c < params.triangles);
-        // Others can neither enter N' nor discard what might.
-        let bears = COVER * WIDER * max(near, reach.own_reach + params.lambda2 * candidates[c].place.w);
-        let within = min(reach.largest, select(bears, reach.largest, reach.own == 0u));
+        let within = reach_of_candidate(p, reach, params.lambda2 * candidates[c].place.w);
         var seen = d2 <= within * within & same_side(candidates[c].normal, center.normal);
         if with_curves {
             let other = Seen(candidates[c].place.xyz, candidates[c].normal, record_of_candidate(c));

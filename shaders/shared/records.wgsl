@@ -93,6 +93,8 @@ struct Counters {
     longest_row: atomic<u32>,
     /// One more than the last point for which the driver cut loops short; see cut_loops.wgsl.
     cut_loops: atomic<u32>,
+    /// Bits of the largest ρ of a candidate.
+    widest: atomic<u32>,
 }
 
 /// No entry: the largest index.

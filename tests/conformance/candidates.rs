@@ -40,14 +40,17 @@ fn candidates_are_those_of_the_reference() {
         must(compare_equal(&what("of slot"), &expected.of_slot, &found));
 
         let run = step.run("candidates", [0; 4], expected.len());
-        device.run(run, &[&points, &candidates, &curves]);
+        let counters = device.counters();
+        device.run(run, &[&points, &candidates, &counters, &curves]);
+        let widest = f32::from_bits(device.read_counters(&counters, &step.name).widest);
+        let scale = expected.rho.iter().copied().fold(0.0, f32::max);
+        must(compare(&what("largest rho"), &[scale], &[widest], device.allows(POSITION), scale));
         let found: Vec<Candidate> = device.read(&candidates, expected.len());
         let rows = step.candidates();
         let places = |c: &[Candidate]| c.iter().flat_map(|c| c.place).collect::<Vec<_>>();
         let normals = |c: &[Candidate]| c.iter().flat_map(|c| c.normal).collect::<Vec<_>>();
         let rest = |c: &[Candidate]| c.iter().map(|c| (c.corners, c.state)).collect::<Vec<_>>();
         must(compare_equal(&what("corners and states"), &rest(&rows), &rest(&found)));
-        let scale = expected.rho.iter().copied().fold(0.0, f32::max);
         let allowed = device.allows(POSITION);
         must(compare(&what("places"), &places(&rows), &places(&found), allowed, scale));
         let allowed = device.allows(NORMAL);

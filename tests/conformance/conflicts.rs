@@ -4,7 +4,7 @@ use crate::harness::{
     ARENA_WORDS, CONFLICTS, Device, MIRROR_LINKS, Step, compare_equal, device, grid_words, must,
     steps,
 };
-use surfine::records::Fan;
+use surfine::records::{Counters, Fan};
 
 /// What the kernels leave: lists, and links to the points whose conflicts only the other side found.
 pub(crate) struct ConflictBuffers {
@@ -29,7 +29,9 @@ impl ConflictBuffers {
         let entries = step.params().around_entries as usize;
         let around = device.output::<u32>("around", entries);
         let arena = device.output::<u32>("arena", ARENA_WORDS);
-        let counters = device.counters();
+        let widest = step.state.candidates.rho.iter().copied().fold(0.0, f32::max);
+        let counters = Counters { widest: widest.to_bits(), ..Counters::default() };
+        let counters = device.guarded("counters", &[counters]);
         let curves = device.buffer("curves", &step.curves());
         let inputs = [&points, &fans, &of_slot, &candidates, &grid, &places];
         let buffers = [&inputs[..], &[&around, &arena, &counters, &curves]].concat();

@@ -6,7 +6,7 @@ use crate::tolerance::RADIUS;
 #[test]
 fn covers_are_those_of_the_reference() {
     let mut device = device();
-    for step in steps().iter().filter(|step| step.refine.rules.next_ring) {
+    for step in steps().iter().filter(|step| step.refine.effective_next_ring()) {
         let (n, count) = (step.level.len(), step.state.candidates.len());
         let state = &step.state;
         let points = device.buffer("points", &step.points());

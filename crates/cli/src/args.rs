@@ -116,7 +116,7 @@ pub(crate) struct RefineArgs {
     /// Which points are neighbors
     #[arg(long, value_enum, value_name = "KIND", default_value_t)]
     neighborhood: NeighborhoodChoice,
-    /// Take the paper's four simplifications: faster, for dense smooth clouds; implies fuzzy
+    /// Take the paper's four simplifications, and no look ahead to the next step: faster, for dense smooth clouds; implies fuzzy
     #[arg(long)]
     simplified: bool,
     /// Measure the angle between new neighbors straight instead of along the curved surface: a little faster

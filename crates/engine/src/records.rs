@@ -113,4 +113,5 @@ pub struct Counters {
     pub left_over: u32,
     pub longest_row: u32,
     pub cut_loops: u32,
+    pub widest: u32,
 }

@@ -301,7 +301,7 @@ impl Refiner {
             buffers,
             scan,
             sizing,
-            rules: refine.rules,
+            next_ring: refine.effective_next_ring(),
             params,
             curve_points: on_curves.new,
         })

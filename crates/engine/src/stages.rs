@@ -10,8 +10,9 @@ use crate::records::{Candidate, Counters, Fan, Params, Point};
 use crate::scan::Scan;
 use crate::shaders::SHADERS;
 use crate::{Error, Gpu};
+use std::mem::offset_of;
 use surfine_features::Gap;
-use surfine_points::{Neighborhood, RefineParams, Rules};
+use surfine_points::{Neighborhood, RefineParams};
 
 /// Rounds of colouring between two looks at what is left.
 const ROUNDS: u32 = 24;
@@ -132,12 +133,15 @@ pub(crate) struct Step<'a> {
     pub(crate) buffers: &'a mut Buffers,
     pub(crate) scan: &'a mut Scan,
     pub(crate) sizing: &'a Sizing,
-    pub(crate) rules: Rules,
+    /// Whether radii cover the next level's rings.
+    pub(crate) next_ring: bool,
     pub(crate) params: Params,
     /// New points that this step puts on creases and boundaries.
     pub(crate) curve_points: u32,
 }
 
+/// The word of [`Counters`] that `candidates` leaves to `conflicts`.
+const WIDEST: u64 = offset_of!(Counters, widest) as u64 / WORD;
 /// Words of four from one item to the next of those that are sorted by cell.
 const POINT_STRIDE: u32 = 2;
 const CANDIDATE_STRIDE: u32 = 3;
@@ -368,7 +372,8 @@ impl Step<'_> {
 
     fn record_candidates(&self, commands: &mut Commands<'_>) {
         let b = &*self.buffers;
-        let buffers = [&b.points, &b.candidates, &b.curves];
+        let buffers = [&b.points, &b.candidates, &b.counters, &b.curves];
+        commands.clear_range(&b.counters, WIDEST, 1);
         commands.run(self.kernels.get("candidates"), &buffers, [0; 4], self.params.candidates);
     }
 
@@ -385,7 +390,7 @@ impl Step<'_> {
         loop {
             self.params.around_entries = words_of(&self.buffers.around);
             let mut commands = self.commands();
-            commands.clear(&self.buffers.counters, words_of(&self.buffers.counters).into());
+            commands.clear(&self.buffers.counters, WIDEST);
             let kernel = self.kernels.get("conflicts");
             commands.run(kernel, &buffers(self.buffers), [0, n, 0, 0], n);
             commands.finish()?;
@@ -539,7 +544,7 @@ impl Step<'_> {
             let inputs = [&b.points, &b.fans, &b.ring_entries, &b.candidates, &b.around];
             [&inputs[..], &[&b.next_radii, &b.arena, &b.counters, &b.curves]].concat()
         }
-        if !self.rules.next_ring {
+        if !self.next_ring {
             return Ok(());
         }
         let n = self.params.points;

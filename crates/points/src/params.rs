@@ -46,7 +46,8 @@ pub struct RefineParams {
     pub levels: u32,
     /// Which neighbourhood; `simplified` overrides it.
     pub neighborhood: Neighborhood,
-    /// The four simplifications of section 7: Euclidean distance, plain angle, `N^f`, displacement after insertion.
+    /// The four simplifications of section 7: Euclidean distance, plain angle, `N^f`, displacement after insertion; and no look
+    /// ahead to the next level's rings.
     pub simplified: bool,
     /// The angle between new neighbours is straight instead of curved (eq. 5); `simplified` asks for it too.
     pub plain_angle: bool,
@@ -92,7 +93,7 @@ pub struct Rules {
     /// Between points on a step, whose normals both lean the same way along their edge, a normal is interpolated without a
     /// bend.
     pub step_normals: bool,
-    /// Radii cover the ring that a point has at the next level.
+    /// Radii cover the ring that a point has at the next level; not with `simplified`.
     pub next_ring: bool,
     /// A crease between two points keeps them from seeing each other.
     pub separating_segments: bool,
@@ -261,5 +262,10 @@ impl RefineParams {
     /// The neighbourhood that is used: `simplified` asks for the fuzzy one.
     pub fn effective_neighborhood(&self) -> Neighborhood {
         if self.simplified { Neighborhood::Fuzzy } else { self.neighborhood }
+    }
+
+    /// Whether radii cover the next level's rings: `simplified` is for clouds that do without.
+    pub fn effective_next_ring(&self) -> bool {
+        self.rules.next_ring && !self.simplified
     }
 }

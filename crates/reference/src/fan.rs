@@ -72,7 +72,7 @@ pub(crate) struct Fan {
     ring: Vec<Member>,
     /// `Y_p` (eq. 10).
     outer: Vec<Member>,
-    /// The candidates of the fan, and which of them were not tried yet.
+    /// The candidates of the fan that are not in N' when it starts, and which of them were not tried yet.
     own: Vec<Member>,
     pending: Vec<bool>,
     /// Whether nothing more is inserted around the point.
@@ -114,7 +114,12 @@ impl Fan {
         self.add_bounds(stage);
         self.own.clear();
         for c in candidates.own(rings, p) {
-            self.own.push(self.center.member(c as u32, &samples[c]));
+            let own = self.center.member(c as u32, &samples[c]);
+            let d2 = own.offset.dot(own.offset);
+            let is_new = is_there(own.id) & (d2 < near * near) & is_apart(d2, radius);
+            let len = self.own.len() + usize::from(!is_new);
+            self.own.push(own);
+            self.own.truncate(len);
         }
         self.pending.clear();
         self.pending.resize(self.own.len(), true);
@@ -151,8 +156,12 @@ impl Fan {
             *angles = rest;
         }
         insertion_sort(&mut self.ring, precedes);
-        self.ask_gaps(0..self.ring.len(), gaps);
-        self.is_complete = false;
+        // Where all candidates are in N', nothing more can be.
+        self.is_complete = self.own.is_empty();
+        self.gaps.clear();
+        if !self.is_complete {
+            self.ask_gaps(0..self.ring.len(), gaps);
+        }
     }
 
     /// Directed angle on the tangent plane from member `i` to the next one, in [0, 2π]. A sheet that ends at the centre has

@@ -32,7 +32,7 @@ pub fn next_ring(stage: Stage<'_>, insertion: &Insertion) -> Covers {
     let points = stage.level.len();
     let zeros = |count| (0..count).map(|_| AtomicU32::new(0)).collect();
     let covers: Vec<AtomicU32> = zeros(points + stage.candidates.len());
-    if stage.params.rules.next_ring {
+    if stage.params.effective_next_ring() {
         let batches = (0..points.div_ceil(BATCH)).into_par_iter();
         batches.with_min_len(8).for_each_init(Scratch::default, |scratch, batch| {
             let batch = batch * BATCH..((batch + 1) * BATCH).min(points);
