@@ -226,7 +226,8 @@ impl Refiner {
         Ok(())
     }
 
-    /// A whole run, which is suspended at each wait for the device if the uniforms have a pace.
+    /// A whole run. If the uniforms have a pace, it is suspended wherever it waits for the device, and ends when that has
+    /// finished.
     pub(crate) async fn run(
         &mut self,
         points: &PointSet,
@@ -237,6 +238,19 @@ impl Refiner {
         points.validate()?;
         check_marks(points, params)?;
         self.prepare(params)?;
+        let result = self.run_levels(points, params, &mut progress).await?;
+        if self.uniforms.is_paced() {
+            self.uniforms.settle(&self.gpu).await?;
+        }
+        Ok(result)
+    }
+
+    async fn run_levels(
+        &mut self,
+        points: &PointSet,
+        params: &RefineParams,
+        progress: &mut impl FnMut(Progress),
+    ) -> Result<GpuRefined, Error> {
         let ordered = Ordered::new(points);
         let points = &ordered.points;
         let records = Records::split(points).map_err(|e| e.in_order(&ordered.order))?;
@@ -253,7 +267,6 @@ impl Refiner {
             let count = level_sizes[level_sizes.len() - 1];
             check_step(&self.gpu, &self.sizing, params, (level, count))?;
             let at = Progress { level, levels: params.levels, stage: "", points: count };
-            let progress = &mut progress;
             let mut clock = Clock { at, progress, times: Vec::new(), begin: Instant::now() };
             let step =
                 Params { points: count as u32, level, ..Params::new(params).with_grid(&shape) };
@@ -290,9 +303,6 @@ impl Refiner {
             let ratio = (count as f32 / report.points_out.max(1) as f32).sqrt();
             shape = GridShape::with_cell(shape.origin, shape.cell * ratio, report.points_out);
             reports.push(report);
-        }
-        if self.uniforms.is_paced() {
-            self.uniforms.settle(&self.gpu).await?;
         }
         let device_bytes = self.buffers.size();
         let (points, parents) =
