@@ -140,7 +140,7 @@ fn the_caller_submits_work_of_his_own_between_slices() {
             break result;
         }
         // Seen at once, whatever the run still does.
-        if calls % 16 == 0 {
+        if calls.is_multiple_of(16) {
             assert_eq!(read::<u32>(gpu, &buffer, 1).expect("the device is alive"), [calls]);
         }
     };
