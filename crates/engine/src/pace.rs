@@ -8,6 +8,8 @@ const FILLED: f64 = 0.75;
 const DISPATCH: f64 = 20e-6;
 /// What an invocation is believed to take before its kernel was timed, in seconds.
 const CAUTIOUS: f64 = 4e-6;
+/// What an invocation takes at least, in seconds.
+const LEAST_RATE: f64 = 1e-12;
 /// What a zeroed word takes, in seconds: that of a slow memory, as it is not timed.
 const CLEARED_WORD: f64 = 1e-9;
 /// Invocations of the smallest part: a workgroup.
@@ -72,9 +74,10 @@ impl Pace {
         f64::from(invocations) * self.seconds(kernel) + DISPATCH
     }
 
-    /// Notes what a dispatch took. Small ones say little about large ones. No part can be more than three times as large as
-    /// the one before, as a third of the old rate stays.
+    /// Notes what a dispatch took. Small ones say little about large ones, but what fills a slice counts, whatever larger ones
+    /// there were.
     pub(crate) fn learn(&mut self, kernel: &'static str, invocations: u32, seconds: f64) {
+        let whole = self.whole;
         let rate = match self.rates.iter().position(|r| r.kernel == kernel) {
             Some(i) => &mut self.rates[i],
             None => {
@@ -84,8 +87,12 @@ impl Pace {
         };
         let count = f64::from(invocations.max(1));
         rate.largest = rate.largest.max(count);
-        let measured = (seconds - DISPATCH).max(0.0) / count;
-        rate.seconds += (measured - rate.seconds) * count / (count + rate.largest / 2.0);
+        let fitting = whole / rate.seconds;
+        let weight = count / (count + rate.largest.min(fitting) / 2.0);
+        let measured = ((seconds - DISPATCH) / count).max(LEAST_RATE);
+        // A third of the old rate stays, so no part is more than three times as large as the one before.
+        let weight = if measured < rate.seconds { weight.min(2.0 / 3.0) } else { weight };
+        rate.seconds += (measured - rate.seconds) * weight;
     }
 
     fn seconds(&self, kernel: &str) -> f64 {
@@ -113,7 +120,7 @@ mod tests {
             // A nanosecond each.
             pace.learn("kernel", before, f64::from(before) * 1e-9 + DISPATCH);
             let now = refilled(&mut pace).take("kernel", u32::MAX);
-            assert!(now <= 3 * before + LEAST && now + LEAST >= before, "{before}, then {now}");
+            assert!(now <= 3 * (before + LEAST) && now + LEAST >= before, "{before}, then {now}");
             before = now;
         }
         let ideal = (FILLED * BUDGET.as_secs_f64() - DISPATCH) / 1e-9;
@@ -123,7 +130,7 @@ mod tests {
     #[test]
     fn a_slower_kernel_gets_smaller_parts() {
         let mut pace = Pace::default();
-        pace.learn("kernel", 100_000, 1e-3);
+        (0..40).for_each(|_| refilled(&mut pace).learn("kernel", 1_000_000, 1e-3));
         let fast = refilled(&mut pace).take("kernel", u32::MAX);
         pace.learn("kernel", fast, 40e-3);
         assert!(refilled(&mut pace).take("kernel", u32::MAX) < fast / 5);
@@ -132,9 +139,9 @@ mod tests {
     #[test]
     fn small_dispatches_say_little_of_large_ones() {
         let mut pace = Pace::default();
-        (0..40).for_each(|_| pace.learn("kernel", 100_000, 1e-3));
+        (0..40).for_each(|_| refilled(&mut pace).learn("kernel", 100_000, 1e-3));
         let before = pace.seconds("kernel");
-        (0..40).for_each(|_| pace.learn("kernel", 1, 40e-6));
+        (0..10).for_each(|_| pace.learn("kernel", 1, 2.0 * DISPATCH));
         assert!(pace.seconds("kernel") < 1.5 * before);
     }
 
