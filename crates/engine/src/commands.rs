@@ -67,7 +67,7 @@ impl<'a> Commands<'a> {
     }
 
     /// Records a dispatch of as many workgroups as the first three words of a buffer say when it runs, for at most so many
-    /// invocations. In slices, where it may have to be cut, it is one for all of these.
+    /// invocations. It is not cut, but waits for the next slice if these don't fit.
     pub async fn dispatch_indirect(
         &mut self,
         bound: &Bound<'_>,
@@ -75,11 +75,14 @@ impl<'a> Commands<'a> {
         groups: &Buffer,
         most: u32,
     ) {
-        if self.uniforms.is_paced() {
-            return self.dispatch(bound, words, most).await;
-        }
         self.make_room().await;
-        self.record(bound, (words, 0), most, |pass| {
+        if self.uniforms.take(self.gpu, bound.kernel.name(), most) < most {
+            self.flush();
+            self.settle().await;
+            self.uniforms.take(self.gpu, bound.kernel.name(), most);
+        }
+        // Of none: its time says nothing, as their number is not known.
+        self.record(bound, (words, 0), 0, |pass| {
             pass.dispatch_workgroups_indirect(groups.raw(), 0);
         });
     }

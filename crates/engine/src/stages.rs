@@ -467,7 +467,11 @@ impl Step<'_> {
         let after = first + self.uniforms.dispatches("coloring", left, ROUNDS);
         for i in first..after {
             commands.dispatch(&prepare, [i, row, 0, 0], 1).await;
-            commands.dispatch_indirect(&round, [i, 0, 0, 0], &b.workgroups, left).await;
+            if i == first {
+                commands.dispatch(&round, [i, 0, 0, 0], left).await;
+            } else {
+                commands.dispatch_indirect(&round, [i, 0, 0, 0], &b.workgroups, left).await;
+            }
         }
         commands.finish().await?;
         // Who waits after the last round waits for the next one.

@@ -31,7 +31,7 @@ pub struct Uniforms {
 /// Dispatches whose times are not known yet.
 #[derive(Debug, Default)]
 struct Timed {
-    /// Kernels and invocations.
+    /// Kernels and invocations; none where their number is not known.
     dispatches: Vec<(&'static str, u32)>,
     begin: Option<Instant>,
 }
@@ -173,9 +173,9 @@ impl Uniforms {
         };
         for ((kernel, invocations), time) in dispatches.into_iter().zip(times) {
             self.profile.iter().for_each(|profile| profile.add(kernel, time));
-            self.pace()
-                .iter_mut()
-                .for_each(|pace| pace.learn(kernel, invocations, time.as_secs_f64()));
+            if let Some(mut pace) = self.pace().filter(|_| invocations > 0) {
+                pace.learn(kernel, invocations, time.as_secs_f64());
+            }
         }
         Ok(())
     }
