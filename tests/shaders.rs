@@ -354,7 +354,7 @@ fn rust_name(inner: &TypeInner) -> String {
 
 #[test]
 fn records_are_laid_out_alike() {
-    use records::{Candidate, Counters, Fan, Params, Point};
+    use records::{Candidate, Counters, Dispatch, Fan, Params, Point};
     let module = parse_text("records", &files("shaders/shared")["records"]);
     let point = members!(Point { position, radius, normal, level });
     assert_eq!(wgsl_record(&module, "Point"), (point, size_of::<Point>()));
@@ -395,6 +395,9 @@ fn records_are_laid_out_alike() {
     // A uniform's size is a multiple of 16.
     assert_eq!(size.next_multiple_of(16), size_of::<Params>());
 
+    let dispatch = members!(Dispatch { x, y, z, w, first });
+    assert_eq!(wgsl_record(&module, "Dispatch"), (dispatch, size_of::<Dispatch>()));
+
     let counters = members!(Counters {
         arena,
         arena_peak,
@@ -407,7 +410,8 @@ fn records_are_laid_out_alike() {
         ball_high,
         left_over,
         longest_row,
-        cut_loops
+        cut_loops,
+        widest
     });
     assert_eq!(wgsl_record(&module, "Counters"), (counters, size_of::<Counters>()));
 }

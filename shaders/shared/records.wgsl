@@ -67,6 +67,17 @@ struct Params {
     mirror_links: u32,
 }
 
+/// What changes from dispatch to dispatch.
+struct Dispatch {
+    /// Four words; each kernel says what they are.
+    x: u32,
+    y: u32,
+    z: u32,
+    w: u32,
+    /// The invocations before this dispatch, where it does a part of them.
+    first: u32,
+}
+
 /// Counters that the host reads between stages.
 struct Counters {
     /// Words of the arena that were asked for since the counter was cleared.
@@ -114,10 +125,9 @@ const FREE: u32 = 0xffffffffu;
 const ON_CURVE: u32 = 0u;
 
 @group(0) @binding(0) var<uniform> params: Params;
-/// What changes from dispatch to dispatch; each kernel says what the four words are.
-@group(0) @binding(1) var<uniform> dispatch: vec4<u32>;
+@group(0) @binding(1) var<uniform> dispatch: Dispatch;
 
 /// Index of an invocation in a dispatch of rows of workgroups of 64.
 fn linear_index(id: vec3<u32>, groups: vec3<u32>) -> u32 {
-    return id.x + id.y * groups.x * 64u;
+    return dispatch.first + id.x + id.y * groups.x * 64u;
 }

@@ -115,8 +115,11 @@ impl Device {
         });
         self.uniforms.set(gpu, &run.params);
         let mut commands = Commands::new(gpu, &self.uniforms);
-        commands.run(kernel, buffers, run.words, run.invocations as u32);
-        commands.finish().expect("the kernel runs");
+        let finished = pollster::block_on(async {
+            commands.run(kernel, buffers, run.words, run.invocations as u32).await;
+            commands.finish().await
+        });
+        finished.expect("the kernel runs");
     }
 }
 

@@ -17,4 +17,5 @@ mod insertion;
 mod neighborhood;
 mod next_ring;
 mod refine;
+mod slices;
 mod tolerance;

@@ -6,6 +6,7 @@ mod device;
 mod forecast;
 mod measure;
 mod report;
+mod slices;
 mod table;
 
 use crate::args::{BenchArgs, BenchBackend};
@@ -164,7 +165,16 @@ impl<'a> Bench<'a> {
     fn on_gpu(&mut self, size: Option<usize>, cloud: &Cloud) -> Result<Option<Measured>, Failure> {
         let Some((mut device, mut forecast)) = self.gpu.take() else { return Ok(None) };
         let tell = |run: &str| self.tell("gpu", cloud, run);
-        let result = on_gpu(&self.plan(cloud, &tell), &mut device.refiner);
+        let plan = self.plan(cloud, &tell);
+        let mut result = on_gpu(&plan, &mut device.refiner);
+        if let (Some(budget), Ok(measured)) = (self.args.slice, &mut result) {
+            let sliced;
+            (device.refiner, sliced) = slices::in_slices(device.refiner, &plan, budget);
+            match sliced {
+                Ok(sliced) => measured.sliced = sliced,
+                Err(error) => result = Err(error),
+            }
+        }
         match &result {
             Ok(measured) => forecast.learn(measured),
             Err(error) => {

@@ -1,5 +1,6 @@
 //! Device memory that grows and is used again.
 
+use crate::gpu::Mapped;
 use crate::{Error, Gpu};
 
 /// A labelled storage buffer. It grows on demand and never shrinks.
@@ -90,29 +91,50 @@ pub(crate) fn with_headroom(bytes: u64, limit: u64) -> u64 {
     bytes.saturating_add(bytes / 4).min(limit).max(bytes)
 }
 
-/// Reads `bytes` bytes from the start of a buffer.
+/// Reads `bytes` bytes from the start of a buffer, and waits for them.
 pub(crate) fn read(gpu: &Gpu, source: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8>, Error> {
-    read_parts(gpu, &[(source, 0, bytes)])
-}
-
-/// Reads several ranges (buffer, offset, bytes), one after the other, in one go. All are multiples of 4.
-pub(crate) fn read_parts(gpu: &Gpu, parts: &[(&wgpu::Buffer, u64, u64)]) -> Result<Vec<u8>, Error> {
-    let total: u64 = parts.iter().map(|p| p.2).sum();
-    if total == 0 {
+    if bytes == 0 {
         return Ok(Vec::new());
     }
-    let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("surfine readback"),
-        size: total,
-        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    let mut at = 0;
-    for &(source, offset, bytes) in parts {
-        encoder.copy_buffer_to_buffer(source, offset, &staging, at, bytes);
-        at += bytes;
+    let encoder = gpu.device.create_command_encoder(&Default::default());
+    let readback = Readback::submit(gpu, encoder, &[(source, 0, bytes)]);
+    gpu.wait()?;
+    readback.bytes(gpu)
+}
+
+/// Bytes on their way to the host.
+#[derive(Debug)]
+pub(crate) struct Readback {
+    staging: wgpu::Buffer,
+    mapped: Mapped,
+}
+
+impl Readback {
+    /// Submits the commands so far, and the copy of several ranges (buffer, offset, bytes) that are not all empty, one after
+    /// the other. All are multiples of 4.
+    pub(crate) fn submit(
+        gpu: &Gpu,
+        mut encoder: wgpu::CommandEncoder,
+        parts: &[(&wgpu::Buffer, u64, u64)],
+    ) -> Self {
+        let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("surfine readback"),
+            size: parts.iter().map(|p| p.2).sum(),
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut at = 0;
+        for &(source, offset, bytes) in parts {
+            encoder.copy_buffer_to_buffer(source, offset, &staging, at, bytes);
+            at += bytes;
+        }
+        gpu.queue.submit([encoder.finish()]);
+        let mapped = Mapped::ask(&staging);
+        Self { staging, mapped }
     }
-    gpu.queue.submit([encoder.finish()]);
-    Ok(gpu.map(&staging)?.to_vec())
+
+    /// The bytes, once the device has done all of that.
+    pub(crate) fn bytes(self, gpu: &Gpu) -> Result<Vec<u8>, Error> {
+        Ok(self.mapped.view(gpu, &self.staging)?.to_vec())
+    }
 }

@@ -1,6 +1,7 @@
 //! Adapters and devices.
 
 use crate::Error;
+use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
 /// How long the host waits for the device before it gives up: a hang must not be for ever.
@@ -146,14 +147,9 @@ impl Gpu {
     /// # Errors
     /// The device was lost or took too long.
     pub fn map(&self, buffer: &wgpu::Buffer) -> Result<wgpu::BufferView, Error> {
-        let (sender, receiver) = std::sync::mpsc::channel();
-        buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-            // The receiver is gone only if the wait below failed, which is reported there.
-            let _ = sender.send(result);
-        });
+        let mapped = Mapped::ask(buffer);
         self.wait()?;
-        receiver.recv().map_err(|e| self.error(&e))?.map_err(|e| self.error(&e))?;
-        buffer.get_mapped_range(..).map_err(|e| self.error(&e))
+        mapped.view(self, buffer)
     }
 
     /// Waits for everything that was submitted.
@@ -166,5 +162,27 @@ impl Gpu {
         // Drivers write long texts: keep to one line.
         let message = message.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
         Error::Device { adapter: self.name.clone(), message }
+    }
+}
+
+/// The device's word that the host may see a buffer.
+#[derive(Debug)]
+pub(crate) struct Mapped(Receiver<Result<(), wgpu::BufferAsyncError>>);
+
+impl Mapped {
+    /// Asks for a view of a buffer of usage `MAP_READ`.
+    pub(crate) fn ask(buffer: &wgpu::Buffer) -> Self {
+        let (sender, receiver) = channel();
+        buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+            // The receiver is gone only if nobody wants the view any more.
+            let _ = sender.send(result);
+        });
+        Self(receiver)
+    }
+
+    /// The view, once the device has done what was submitted before the question.
+    pub(crate) fn view(self, gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<wgpu::BufferView, Error> {
+        self.0.recv().map_err(|e| gpu.error(&e))?.map_err(|e| gpu.error(&e))?;
+        buffer.get_mapped_range(..).map_err(|e| gpu.error(&e))
     }
 }

@@ -23,12 +23,15 @@ mod error;
 mod forecast;
 mod gpu;
 mod kernel;
+mod pace;
 mod profile;
 pub mod records;
 mod refiner;
 mod scan;
 pub mod shaders;
+mod slices;
 mod stages;
+mod uniforms;
 
 pub use error::Error;
 pub use forecast::{Forecast, points_by_level};
@@ -36,6 +39,7 @@ pub use gpu::{Gpu, Mode, adapters, choose_adapter};
 pub use kernel::{Kernel, WORKGROUP_SIZE, exact_spirv};
 pub use profile::KernelTime;
 pub use refiner::{GpuRefined, Refiner};
+pub use slices::Slices;
 pub use surfine_points::{
     Attribute, Boundary, CurveCounts, LevelReport, Neighborhood, PointSet, Progress, RefineParams,
     Refined, Rules, Vec3,
@@ -50,8 +54,9 @@ struct Readme;
 /// The parts of the engine that tests run one at a time; not part of the stable interface.
 pub mod testing {
     pub use crate::buffers::Buffer;
-    pub use crate::commands::{Commands, Uniforms};
+    pub use crate::commands::Commands;
     pub use crate::stages::{Constants, Sizing, constants};
+    pub use crate::uniforms::Uniforms;
 
     /// Reads the first `count` values of a buffer.
     ///

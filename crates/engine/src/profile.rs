@@ -1,8 +1,8 @@
 //! How long each kernel runs on the device, by timestamp queries.
 
-use crate::buffers;
+use crate::buffers::Readback;
 use crate::{Error, Gpu};
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 /// The time of one kernel over many dispatches.
@@ -16,21 +16,20 @@ pub struct KernelTime {
     pub time: Duration,
 }
 
-/// Timestamps around the dispatches of a submission, and the sums so far.
+/// Timestamps around dispatches.
 #[derive(Debug)]
-pub(crate) struct Profile {
+pub(crate) struct Stamps {
     set: wgpu::QuerySet,
     resolved: wgpu::Buffer,
     /// Nanoseconds of a tick.
     period: f32,
-    times: Mutex<Vec<KernelTime>>,
 }
 
 /// Bytes of a timestamp.
 const TICK: u64 = 8;
 
-impl Profile {
-    /// Room for so many dispatches a submission.
+impl Stamps {
+    /// Room for so many dispatches.
     ///
     /// # Errors
     /// The device has no timestamps.
@@ -49,8 +48,7 @@ impl Profile {
             usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
             mapped_at_creation: false,
         });
-        let period = gpu.queue.get_timestamp_period();
-        Ok(Self { set, resolved, period, times: Mutex::default() })
+        Ok(Self { set, resolved, period: gpu.queue.get_timestamp_period() })
     }
 
     /// Where a dispatch writes its times.
@@ -62,29 +60,40 @@ impl Profile {
         }
     }
 
-    /// Records that the times of these dispatches are wanted.
-    pub(crate) fn resolve(&self, encoder: &mut wgpu::CommandEncoder, dispatches: u32) {
-        encoder.resolve_query_set(&self.set, 0..2 * dispatches, &self.resolved, 0);
+    /// Sends the times of the first dispatches to the host.
+    pub(crate) fn read_back(&self, gpu: &Gpu, dispatches: usize) -> Readback {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        encoder.resolve_query_set(&self.set, 0..2 * dispatches as u32, &self.resolved, 0);
+        Readback::submit(gpu, encoder, &[(&self.resolved, 0, 2 * TICK * dispatches as u64)])
     }
 
-    /// Waits for the submission of these kernels and adds up their times.
-    pub(crate) fn collect(&self, gpu: &Gpu, kernels: &[&'static str]) -> Result<(), Error> {
-        let bytes = buffers::read(gpu, &self.resolved, 2 * TICK * kernels.len() as u64)?;
-        let ticks: Vec<[u64; 2]> = bytemuck::pod_collect_to_vec(&bytes);
-        let mut times = self.times.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        for (&kernel, [begin, end]) in kernels.iter().zip(ticks) {
+    /// The times of the dispatches whose stamps were read.
+    pub(crate) fn times(&self, bytes: &[u8]) -> Vec<Duration> {
+        let ticks: Vec<[u64; 2]> = bytemuck::pod_collect_to_vec(bytes);
+        let time = |[begin, end]: [u64; 2]| {
             let nanoseconds = end.saturating_sub(begin) as f64 * f64::from(self.period);
-            let time = Duration::from_nanos(nanoseconds as u64);
-            match times.iter_mut().find(|t| t.kernel == kernel) {
-                Some(sum) => (sum.dispatches, sum.time) = (sum.dispatches + 1, sum.time + time),
-                None => times.push(KernelTime { kernel, dispatches: 1, time }),
-            }
+            Duration::from_nanos(nanoseconds as u64)
+        };
+        ticks.into_iter().map(time).collect()
+    }
+}
+
+/// The sums so far.
+#[derive(Debug, Default)]
+pub(crate) struct Profile(Mutex<Vec<KernelTime>>);
+
+impl Profile {
+    /// Adds the time of a dispatch.
+    pub(crate) fn add(&self, kernel: &'static str, time: Duration) {
+        let mut times = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        match times.iter_mut().find(|t| t.kernel == kernel) {
+            Some(sum) => (sum.dispatches, sum.time) = (sum.dispatches + 1, sum.time + time),
+            None => times.push(KernelTime { kernel, dispatches: 1, time }),
         }
-        Ok(())
     }
 
     /// The sums since the last call, in the order in which the kernels first ran.
     pub(crate) fn take(&self) -> Vec<KernelTime> {
-        std::mem::take(&mut *self.times.lock().unwrap_or_else(std::sync::PoisonError::into_inner))
+        std::mem::take(&mut *self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }

@@ -96,6 +96,18 @@ impl Params {
     }
 }
 
+/// What changes from dispatch to dispatch.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+#[expect(missing_docs, reason = "the fields are documented in records.wgsl")]
+pub struct Dispatch {
+    pub x: u32,
+    pub y: u32,
+    pub z: u32,
+    pub w: u32,
+    pub first: u32,
+}
+
 /// Counters that the host reads between stages.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]

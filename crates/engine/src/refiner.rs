@@ -1,14 +1,16 @@
 //! The loop over levels (section 2 of the paper) on the device.
 
 use crate::buffers::{self, Buffer};
-use crate::commands::Uniforms;
 use crate::curves;
 use crate::forecast::{Forecast, check_step};
+use crate::pace::Pace;
 use crate::profile::{KernelTime, Profile};
 use crate::records::{Counters, LEVEL_BITS, Params, Point};
 use crate::scan::Scan;
 use crate::stages::{Buffers, Constants, Kernels, Sizing, Step, constants};
+use crate::uniforms::Uniforms;
 use crate::{Error, Gpu, choose_adapter};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 use surfine_features::{
     Cloud, Features, Folded, Records, Refinement, check_marks, fold, may_be_boundary,
@@ -24,7 +26,9 @@ pub struct Refiner {
     gpu: Gpu,
     /// Compiled once for each variant that was asked for.
     kernels: Vec<(Constants, Kernels)>,
-    uniforms: Uniforms,
+    pub(crate) uniforms: Uniforms,
+    /// What is known of the kernels' times, for runs in slices.
+    pub(crate) pace: Arc<Mutex<Pace>>,
     buffers: Buffers,
     scan: Scan,
     sizing: Sizing,
@@ -98,7 +102,8 @@ impl Refiner {
         let uniforms = Uniforms::new(&gpu);
         let (buffers, scan) = gpu.guarded(|| Ok((Buffers::new(&gpu)?, Scan::new(&gpu)?)))?;
         let sizing = Sizing::default();
-        let mut refiner = Self { gpu, kernels: Vec::new(), uniforms, buffers, scan, sizing };
+        let (kernels, pace) = (Vec::new(), Arc::default());
+        let mut refiner = Self { gpu, kernels, uniforms, pace, buffers, scan, sizing };
         refiner.prepare(&RefineParams::default())?;
         Ok(refiner)
     }
@@ -110,6 +115,15 @@ impl Refiner {
     /// A kernel is refused.
     pub fn prepare(&mut self, params: &RefineParams) -> Result<(), Error> {
         self.compile(constants(params, false))
+    }
+
+    /// [`Refiner::prepare`] for clouds with creases or boundaries, which have kernels of their own: else these are compiled when
+    /// the first one is met.
+    ///
+    /// # Errors
+    /// A kernel is refused.
+    pub fn prepare_curves(&mut self, params: &RefineParams) -> Result<(), Error> {
+        self.compile(constants(params, true))
     }
 
     fn compile(&mut self, constants: Constants) -> Result<(), Error> {
@@ -195,24 +209,47 @@ impl Refiner {
         params: &RefineParams,
         progress: &mut dyn FnMut(Progress),
     ) -> Result<GpuRefined, Error> {
-        params.validate()?;
-        points.validate()?;
-        check_marks(points, params)?;
-        self.prepare(params)?;
         let gpu = self.gpu.clone();
-        let result = gpu.guarded(|| self.run_levels(points, params, progress));
+        // Nothing suspends the run: the device is waited for.
+        let run = self.run(points, params, progress);
+        let result = gpu.guarded(|| pollster::block_on(run));
         if result.is_err() {
-            // A buffer that could not be had looks like one that was.
-            (self.buffers, self.scan) = (Buffers::new(&gpu)?, Scan::new(&gpu)?);
+            self.renew()?;
         }
         result
     }
 
-    fn run_levels(
+    /// Makes the buffers anew: after a failure one that could not be had looks like one that was.
+    pub(crate) fn renew(&mut self) -> Result<(), Error> {
+        self.uniforms.forget();
+        (self.buffers, self.scan) = (Buffers::new(&self.gpu)?, Scan::new(&self.gpu)?);
+        Ok(())
+    }
+
+    /// A whole run. If the uniforms have a pace, it is suspended wherever it waits for the device, and ends when that has
+    /// finished.
+    pub(crate) async fn run(
         &mut self,
         points: &PointSet,
         params: &RefineParams,
-        progress: &mut dyn FnMut(Progress),
+        mut progress: impl FnMut(Progress),
+    ) -> Result<GpuRefined, Error> {
+        params.validate()?;
+        points.validate()?;
+        check_marks(points, params)?;
+        self.prepare(params)?;
+        let result = self.run_levels(points, params, &mut progress).await?;
+        if self.uniforms.is_paced() {
+            self.uniforms.settle(&self.gpu).await?;
+        }
+        Ok(result)
+    }
+
+    async fn run_levels(
+        &mut self,
+        points: &PointSet,
+        params: &RefineParams,
+        progress: &mut impl FnMut(Progress),
     ) -> Result<GpuRefined, Error> {
         let ordered = Ordered::new(points);
         let points = &ordered.points;
@@ -236,7 +273,8 @@ impl Refiner {
             let mut rings = None;
             if level == 1 && params.boundary != Boundary::None {
                 let input = (points, &records);
-                rings = self.find_boundary(params, step, input, &mut features, &mut clock)?;
+                let found = self.find_boundary(params, step, input, &mut features, &mut clock);
+                rings = found.await?;
             }
             if level == 1 {
                 counts = features.counts();
@@ -253,12 +291,13 @@ impl Refiner {
             let (old, new_count) = (features.old as u32, new.len() as u32);
             let on_curves = OnCurves { records: old, new: new_count };
             let earlier = count - records.len();
-            let mut report = self.run_step(params, step, rings, on_curves, earlier, &mut clock)?;
+            let report = self.run_step(params, step, rings, on_curves, earlier, &mut clock);
+            let mut report = report.await?;
             report.stages = clock.stop();
             level_sizes.push(report.points_out);
             features.commit(report.points_out - new.len());
             if params.keep_radii {
-                level_radii.push(self.read_radii(self.buffers.points.raw(), report.points_out)?);
+                level_radii.push(self.read_radii(report.points_out).await?);
             }
             // The area stays, so the spacing goes with the root of the number of points, and the grid with it.
             let ratio = (count as f32 / report.points_out.max(1) as f32).sqrt();
@@ -290,7 +329,7 @@ impl Refiner {
     ) -> Result<Step<'_>, Error> {
         let constants = constants(refine, on_curves.records > 0);
         self.compile(constants.clone())?;
-        let Self { gpu, kernels, uniforms, buffers, scan, sizing } = self;
+        let Self { gpu, kernels, uniforms, buffers, scan, sizing, .. } = self;
         let kernels = kernels.iter().find(|(c, _)| *c == constants);
         let (_, kernels) = kernels.expect("they were compiled");
         let params = Params { records: on_curves.records, ..params };
@@ -308,28 +347,28 @@ impl Refiner {
     }
 
     /// Finds the boundaries of the input (section 6). The rings that show that there are none serve the first step.
-    fn find_boundary(
+    async fn find_boundary<P: FnMut(Progress)>(
         &mut self,
         refine: &RefineParams,
         params: Params,
         (points, records): (&PointSet, &Records),
         features: &mut Features,
-        clock: &mut Clock<'_>,
+        clock: &mut Clock<'_, P>,
     ) -> Result<Option<Rings>, Error> {
         curves::upload(&self.gpu, &mut self.buffers.curves, features, &[])?;
         let on_curves = OnCurves { records: features.old as u32, new: 0 };
         let mut step = self.step(refine, params, on_curves)?;
         clock.start("grid");
-        step.grid_points()?;
+        step.grid_points().await?;
         clock.start("neighborhood");
-        let counters = step.neighborhood()?;
+        let counters = step.neighborhood().await?;
         clock.start("boundary");
         let theta_b = match refine.boundary {
             Boundary::Angle(theta_b) => theta_b,
             // Whatever the gap.
             Boundary::None | Boundary::Marked(_) => 0.0,
         };
-        let mut gaps = step.boundary_gaps(theta_b)?;
+        let mut gaps = step.boundary_gaps(theta_b).await?;
         let slots = step.params.slots;
         gaps.retain(|gap| may_be_boundary(points, refine, gap));
         let Records { positions, normals, radii, .. } = records;
@@ -343,14 +382,14 @@ impl Refiner {
     }
 
     /// Runs the stages of one refinement step. `rings` says that they are there already.
-    fn run_step(
+    async fn run_step<P: FnMut(Progress)>(
         &mut self,
         refine: &RefineParams,
         params: Params,
         rings: Option<Rings>,
         on_curves: OnCurves,
         earlier: usize,
-        clock: &mut Clock<'_>,
+        clock: &mut Clock<'_, P>,
     ) -> Result<LevelReport, Error> {
         let mut step = self.step(refine, params, on_curves)?;
         let counters = if let Some(Rings { counters, slots }) = rings {
@@ -358,22 +397,22 @@ impl Refiner {
             counters
         } else {
             clock.start("grid");
-            step.grid_points()?;
+            step.grid_points().await?;
             clock.start("neighborhood");
-            step.neighborhood()?
+            step.neighborhood().await?
         };
         clock.start("candidates");
-        step.candidates()?;
+        step.candidates().await?;
         clock.start("conflicts");
-        let left_over = step.conflicts()?.left_over;
+        let left_over = step.conflicts().await?.left_over;
         clock.start("coloring");
-        let classes = step.coloring()?;
+        let classes = step.coloring().await?;
         clock.start("insertion");
-        let new = step.insertion(&classes, left_over)?;
+        let new = step.insertion(&classes, left_over).await?;
         clock.start("next_ring");
-        step.next_ring(left_over)?;
+        step.next_ring(left_over).await?;
         clock.start("commit");
-        step.commit(new, earlier as u32)?;
+        step.commit(new, earlier as u32).await?;
         let Counters { ball_low, ball_high, isolated, .. } = counters;
         Ok(LevelReport {
             points_in: params.points as usize,
@@ -401,9 +440,11 @@ impl Refiner {
         self.buffers.counters.reserve(&self.gpu, size_of::<Counters>() as u64)
     }
 
-    fn read_radii(&self, points: &wgpu::Buffer, count: usize) -> Result<Vec<f32>, Error> {
-        let bytes = buffers::read(&self.gpu, points, (count * size_of::<Point>()) as u64)?;
-        let points: Vec<Point> = bytemuck::pod_collect_to_vec(&bytes);
+    async fn read_radii(&self, count: usize) -> Result<Vec<f32>, Error> {
+        let bytes = (count * size_of::<Point>()) as u64;
+        let parts = [(self.buffers.points.raw(), 0, bytes)];
+        let points = self.uniforms.read(&self.gpu, &parts).await?;
+        let points: Vec<Point> = bytemuck::pod_collect_to_vec(&points);
         Ok(points.iter().map(|p| p.radius).collect())
     }
 
@@ -458,14 +499,14 @@ struct Rings {
 }
 
 /// Times the stages and tells the caller where the run stands.
-struct Clock<'a> {
+struct Clock<'a, P> {
     at: Progress,
-    progress: &'a mut dyn FnMut(Progress),
+    progress: &'a mut P,
     times: Vec<(&'static str, Duration)>,
     begin: Instant,
 }
 
-impl Clock<'_> {
+impl<P: FnMut(Progress)> Clock<'_, P> {
     fn start(&mut self, stage: &'static str) {
         self.close();
         self.at.stage = stage;

@@ -31,7 +31,7 @@ impl Scan {
     }
 
     /// Records the inclusive prefix sum of `count` values from `first` on, in place.
-    pub(crate) fn record(
+    pub(crate) async fn record(
         &self,
         commands: &mut Commands<'_>,
         kernels: (&Kernel, &Kernel),
@@ -51,11 +51,12 @@ impl Scan {
         }
         for pair in layers.windows(2) {
             let ((from, first, count), (to, _, blocks)) = (pair[0], pair[1]);
-            commands.run(sum, &[from, to], [first, count, 0, 0], blocks);
+            commands.run(sum, &[from, to], [first, count, 0, 0], blocks).await;
         }
         for (i, &(layer, first, count)) in layers.iter().enumerate().rev() {
             // The last layer has one block, which reads no sums.
-            commands.run(add, &[layer, &self.sums[i]], [first, count, 0, 0], count.div_ceil(BLOCK));
+            let blocks = count.div_ceil(BLOCK);
+            commands.run(add, &[layer, &self.sums[i]], [first, count, 0, 0], blocks).await;
         }
     }
 }

@@ -3,12 +3,13 @@
 //! Nothing that grows with the cloud is read back, but for the gaps of possible boundary points: only [`Counters`], ring and class totals and the number of new
 //! points, since buffers are sized on the host. A stage whose buffers turn out too small runs again with larger ones.
 
-use crate::buffers::{Buffer, read_parts};
-use crate::commands::{Commands, Uniforms};
+use crate::buffers::Buffer;
+use crate::commands::Commands;
 use crate::kernel::Kernel;
 use crate::records::{Candidate, Counters, Fan, Params, Point};
 use crate::scan::Scan;
 use crate::shaders::SHADERS;
+use crate::uniforms::Uniforms;
 use crate::{Error, Gpu};
 use std::mem::offset_of;
 use surfine_features::Gap;
@@ -158,17 +159,23 @@ impl Step<'_> {
         Commands::new(self.gpu, self.uniforms)
     }
 
-    fn record_scan(&self, commands: &mut Commands<'_>, values: &Buffer, first: u32, count: u32) {
+    async fn record_scan(
+        &self,
+        commands: &mut Commands<'_>,
+        values: &Buffer,
+        first: u32,
+        count: u32,
+    ) {
         let kernels = (self.kernels.get("scan_sum"), self.kernels.get("scan_add"));
-        self.scan.record(commands, kernels, values, first, count);
+        self.scan.record(commands, kernels, values, first, count).await;
     }
 
     /// Reads the counters and single words (buffer, index).
-    fn read(&self, words: &[(&Buffer, u32)]) -> Result<(Counters, Vec<u32>), Error> {
+    async fn read(&self, words: &[(&Buffer, u32)]) -> Result<(Counters, Vec<u32>), Error> {
         let size = size_of::<Counters>() as u64;
         let mut parts = vec![(self.buffers.counters.raw(), 0, size)];
         parts.extend(words.iter().map(|(buffer, i)| (buffer.raw(), WORD * u64::from(*i), WORD)));
-        let bytes = read_parts(self.gpu, &parts)?;
+        let bytes = self.uniforms.read(self.gpu, &parts).await?;
         let (counters, words) = bytes.split_at(size as usize);
         let counters: Counters = bytemuck::pod_read_unaligned(counters);
         if counters.cut_loops > 0 {
@@ -178,8 +185,8 @@ impl Step<'_> {
     }
 
     /// Reads the counters alone.
-    fn counters(&self) -> Result<Counters, Error> {
-        Ok(self.read(&[])?.0)
+    async fn counters(&self) -> Result<Counters, Error> {
+        Ok(self.read(&[]).await?.0)
     }
 
     /// The error that names a point whose neighbours are too many.
@@ -197,12 +204,12 @@ impl Step<'_> {
     }
 
     /// `grid` of the points.
-    pub(crate) fn grid_points(&mut self) -> Result<(), Error> {
-        self.sort_into_grid(self.params.points, POINT_STRIDE)
+    pub(crate) async fn grid_points(&mut self) -> Result<(), Error> {
+        self.sort_into_grid(self.params.points, POINT_STRIDE).await
     }
 
     /// Sorts points or candidates by cell.
-    fn sort_into_grid(&mut self, items: u32, stride: u32) -> Result<(), Error> {
+    async fn sort_into_grid(&mut self, items: u32, stride: u32) -> Result<(), Error> {
         let cells = self.cells();
         self.buffers.grid.reserve(self.gpu, WORD * (u64::from(cells) + 1))?;
         self.buffers.places.reserve(self.gpu, 4 * WORD * u64::from(items))?;
@@ -213,15 +220,17 @@ impl Step<'_> {
         let words = [items, stride, 0, 0];
         let mut commands = self.commands();
         commands.clear(&b.grid, u64::from(cells) + 1);
-        commands.run(self.kernels.get("grid_count"), &[from, &b.grid, &b.cells], words, items);
-        self.record_scan(&mut commands, &b.grid, 0, cells + 1);
+        commands
+            .run(self.kernels.get("grid_count"), &[from, &b.grid, &b.cells], words, items)
+            .await;
+        self.record_scan(&mut commands, &b.grid, 0, cells + 1).await;
         let fill = self.kernels.get("grid_fill");
-        commands.run(fill, &[from, &b.cells, &b.grid, &b.places], words, items);
-        commands.finish()
+        commands.run(fill, &[from, &b.cells, &b.grid, &b.places], words, items).await;
+        commands.finish().await
     }
 
     /// Runs the variant of a kernel with rows in the arena for what was left over, in parts that fit there.
-    fn run_large(
+    async fn run_large(
         &mut self,
         kernel: &str,
         buffers: fn(&Buffers) -> Vec<&Buffer>,
@@ -236,10 +245,10 @@ impl Step<'_> {
             for first in (0..n).step_by(chunk as usize) {
                 let count = chunk.min(n - first);
                 commands.clear_range(&self.buffers.counters, 0, 1);
-                commands.dispatch(&bound, [first, count, 0, 0], count);
+                commands.dispatch(&bound, [first, count, 0, 0], count).await;
             }
-            commands.finish()?;
-            let counters = self.counters()?;
+            commands.finish().await?;
+            let counters = self.counters().await?;
             if self.make_room_in_arena(&counters, &mut chunk)? {
                 return Ok(counters);
             }
@@ -264,7 +273,7 @@ impl Step<'_> {
     }
 
     /// `neighborhood`: the rings. Returns the counters.
-    pub(crate) fn neighborhood(&mut self) -> Result<Counters, Error> {
+    pub(crate) async fn neighborhood(&mut self) -> Result<Counters, Error> {
         fn buffers(b: &Buffers) -> Vec<&Buffer> {
             vec![
                 &b.points,
@@ -286,11 +295,11 @@ impl Step<'_> {
             let mut commands = self.commands();
             commands.clear(&self.buffers.counters, words_of(&self.buffers.counters).into());
             let kernel = self.kernels.get("neighborhood");
-            commands.run(kernel, &buffers(self.buffers), [0, n, 0, 0], n);
-            commands.finish()?;
-            let mut counters = self.counters()?;
+            commands.run(kernel, &buffers(self.buffers), [0, n, 0, 0], n).await;
+            commands.finish().await?;
+            let mut counters = self.counters().await?;
             if counters.left_over & NEIGHBORHOOD != 0 {
-                counters = self.run_large("neighborhood_large", buffers)?;
+                counters = self.run_large("neighborhood_large", buffers).await?;
             }
             if counters.slots <= self.params.ring_entries {
                 self.params.slots = counters.slots;
@@ -301,7 +310,7 @@ impl Step<'_> {
     }
 
     /// The widest gaps of the rings (section 6), of those wider than an angle in radians, by point.
-    pub(crate) fn boundary_gaps(&mut self, theta_b: f32) -> Result<Vec<Gap>, Error> {
+    pub(crate) async fn boundary_gaps(&mut self, theta_b: f32) -> Result<Vec<Gap>, Error> {
         let room = self.params.points / 16 + 1024;
         self.buffers.gaps.reserve(self.gpu, 4 * WORD * u64::from(room))?;
         self.buffers.gap_count.reserve(self.gpu, WORD)?;
@@ -313,19 +322,17 @@ impl Step<'_> {
             let buffers = [&b.fans, &b.ring_entries, &b.gaps, &b.gap_count];
             let words = [theta_b.to_bits(), room, 0, 0];
             let kernel = self.kernels.get("boundary_gaps");
-            commands.run(kernel, &buffers, words, self.params.points);
-            commands.finish()?;
-            let count: u32 = bytemuck::pod_read_unaligned(&read_parts(
-                self.gpu,
-                &[(b.gap_count.raw(), 0, WORD)],
-            )?);
+            commands.run(kernel, &buffers, words, self.params.points).await;
+            commands.finish().await?;
+            let count = self.uniforms.read(self.gpu, &[(b.gap_count.raw(), 0, WORD)]).await?;
+            let count: u32 = bytemuck::pod_read_unaligned(&count);
             if count <= room {
                 break count;
             }
             self.buffers.gaps.reserve(self.gpu, 4 * WORD * u64::from(count))?;
         };
         let bytes = 4 * WORD * u64::from(count);
-        let words = read_parts(self.gpu, &[(self.buffers.gaps.raw(), 0, bytes)])?;
+        let words = self.uniforms.read(self.gpu, &[(self.buffers.gaps.raw(), 0, bytes)]).await?;
         let words: Vec<[u32; 4]> = bytemuck::pod_collect_to_vec(&words);
         let gap = |[point, begin, end, angle]: [u32; 4]| Gap {
             point,
@@ -339,7 +346,7 @@ impl Step<'_> {
     }
 
     /// `candidates` of all fans.
-    pub(crate) fn candidates(&mut self) -> Result<(), Error> {
+    pub(crate) async fn candidates(&mut self) -> Result<(), Error> {
         let (n, slots) = (self.params.points, self.params.slots);
         self.buffers.of_slot.reserve(self.gpu, WORD * u64::from(slots))?;
         self.buffers.numbers.reserve(self.gpu, WORD * u64::from(slots))?;
@@ -350,10 +357,10 @@ impl Step<'_> {
         commands.clear(&b.first_candidates, 1);
         let buffers =
             [&b.points, &b.fans, &b.ring_entries, &b.of_slot, &b.first_candidates, &b.curves];
-        commands.run(self.kernels.get("candidates_home"), &buffers, [0; 4], n);
-        self.record_scan(&mut commands, &b.first_candidates, 0, n + 1);
-        commands.finish()?;
-        let (_, totals) = self.read(&[(&b.first_candidates, n)])?;
+        commands.run(self.kernels.get("candidates_home"), &buffers, [0; 4], n).await;
+        self.record_scan(&mut commands, &b.first_candidates, 0, n + 1).await;
+        commands.finish().await?;
+        let (_, totals) = self.read(&[(&b.first_candidates, n)]).await?;
         self.params.triangles = totals[0];
         self.params.candidates = totals[0] + self.curve_points;
         let bytes = size_of::<Candidate>() as u64 * u64::from(self.params.candidates);
@@ -363,27 +370,29 @@ impl Step<'_> {
         let inputs = [&b.points, &b.fans, &b.ring_entries, &b.of_slot, &b.first_candidates];
         let outputs = [&b.numbers, &b.candidates, &b.curves];
         let kernel = self.kernels.get("candidates_number");
-        commands.run(kernel, &[&inputs[..], &outputs].concat(), [0; 4], n);
+        commands.run(kernel, &[&inputs[..], &outputs].concat(), [0; 4], n).await;
         let link = self.kernels.get("candidates_link");
-        commands.run(link, &[&b.numbers, &b.of_slot], [0; 4], slots);
-        self.record_candidates(&mut commands);
-        commands.finish()
+        commands.run(link, &[&b.numbers, &b.of_slot], [0; 4], slots).await;
+        self.record_candidates(&mut commands).await;
+        commands.finish().await
     }
 
-    fn record_candidates(&self, commands: &mut Commands<'_>) {
+    async fn record_candidates(&self, commands: &mut Commands<'_>) {
         let b = &*self.buffers;
         let buffers = [&b.points, &b.candidates, &b.counters, &b.curves];
         commands.clear_range(&b.counters, WIDEST, 1);
-        commands.run(self.kernels.get("candidates"), &buffers, [0; 4], self.params.candidates);
+        commands
+            .run(self.kernels.get("candidates"), &buffers, [0; 4], self.params.candidates)
+            .await;
     }
 
     /// `conflicts`: the candidates by cell, then what is around each point, and the conflict graph.
-    pub(crate) fn conflicts(&mut self) -> Result<Counters, Error> {
+    pub(crate) async fn conflicts(&mut self) -> Result<Counters, Error> {
         fn buffers(b: &Buffers) -> Vec<&Buffer> {
             let inputs = [&b.points, &b.fans, &b.of_slot, &b.candidates, &b.grid, &b.places];
             [&inputs[..], &[&b.around, &b.arena, &b.counters, &b.curves]].concat()
         }
-        self.sort_into_grid(self.params.candidates, CANDIDATE_STRIDE)?;
+        self.sort_into_grid(self.params.candidates, CANDIDATE_STRIDE).await?;
         let n = self.params.points;
         let entries = 4 * u64::from(self.sizing.entries) / 3 * u64::from(n);
         self.buffers.around.reserve(self.gpu, WORD * entries)?;
@@ -392,11 +401,11 @@ impl Step<'_> {
             let mut commands = self.commands();
             commands.clear(&self.buffers.counters, WIDEST);
             let kernel = self.kernels.get("conflicts");
-            commands.run(kernel, &buffers(self.buffers), [0, n, 0, 0], n);
-            commands.finish()?;
-            let mut counters = self.counters()?;
+            commands.run(kernel, &buffers(self.buffers), [0, n, 0, 0], n).await;
+            commands.finish().await?;
+            let mut counters = self.counters().await?;
             if counters.left_over & CONFLICTS != 0 {
-                counters = self.run_large("conflicts_large", buffers)?;
+                counters = self.run_large("conflicts_large", buffers).await?;
             }
             if counters.around <= self.params.around_entries {
                 return Ok(counters);
@@ -406,7 +415,7 @@ impl Step<'_> {
     }
 
     /// `coloring`: the classes, and the points by class. Returns the first member of each class and the end.
-    pub(crate) fn coloring(&mut self) -> Result<Vec<u32>, Error> {
+    pub(crate) async fn coloring(&mut self) -> Result<Vec<u32>, Error> {
         let n = self.params.points;
         self.buffers.classes.reserve(self.gpu, WORD * u64::from(n))?;
         self.buffers.mirror_heads.reserve(self.gpu, WORD * u64::from(n))?;
@@ -417,26 +426,27 @@ impl Step<'_> {
         self.buffers.mirror_links.reserve(self.gpu, 2 * WORD * links)?;
         loop {
             self.params.mirror_links = words_of(&self.buffers.mirror_links) / 2;
-            self.record_mirror()?;
-            let (mut counters, mut left) = self.run_rounds(0)?;
+            self.record_mirror().await?;
+            let (mut counters, mut round, mut left) = self.run_rounds(0, n).await?;
             let links = counters.mirrored;
             if links > self.params.mirror_links {
                 self.buffers.mirror_links.reserve(self.gpu, 2 * WORD * u64::from(links))?;
                 continue;
             }
-            let mut round = ROUNDS;
             while left > 0 {
-                (counters, left) = self.run_rounds(round)?;
-                round += ROUNDS;
+                (counters, round, left) = self.run_rounds(round, left).await?;
             }
-            self.sort_by_class(counters.classes)?;
+            self.sort_by_class(counters.classes).await?;
             let bytes = WORD * (u64::from(counters.classes) + 1);
-            let starts = read_parts(self.gpu, &[(self.buffers.class_members.raw(), 0, bytes)])?;
+            let starts = self
+                .uniforms
+                .read(self.gpu, &[(self.buffers.class_members.raw(), 0, bytes)])
+                .await?;
             return Ok(bytemuck::pod_collect_to_vec(&starts));
         }
     }
 
-    fn record_mirror(&self) -> Result<(), Error> {
+    async fn record_mirror(&self) -> Result<(), Error> {
         let b = &*self.buffers;
         let n = self.params.points;
         let mut commands = self.commands();
@@ -444,12 +454,13 @@ impl Step<'_> {
         commands.clear(&b.mirror_heads, n.into());
         commands.clear(&b.classes, n.into());
         let buffers = [&b.fans, &b.around, &b.mirror_heads, &b.mirror_links, &b.counters];
-        commands.run(self.kernels.get("conflicts_mirror"), &buffers, [0; 4], n);
-        commands.finish()
+        commands.run(self.kernels.get("conflicts_mirror"), &buffers, [0; 4], n).await;
+        commands.finish().await
     }
 
-    /// Some rounds of colouring, from that number on. Returns the counters and how many points are left.
-    fn run_rounds(&self, first: u32) -> Result<(Counters, u32), Error> {
+    /// Some rounds of colouring, from that number on, of so many points that wait. Returns the counters, the next round and
+    /// how many points are left.
+    async fn run_rounds(&self, first: u32, left: u32) -> Result<(Counters, u32, u32), Error> {
         let b = &*self.buffers;
         let mut commands = self.commands();
         let graph = [&b.fans, &b.around, &b.mirror_heads, &b.mirror_links];
@@ -458,17 +469,22 @@ impl Step<'_> {
         let prepare =
             commands.bind(self.kernels.get("coloring_round"), &[&b.rounds, &b.workgroups]);
         let row = self.gpu.device.limits().max_compute_workgroups_per_dimension;
-        for i in first..first + ROUNDS {
-            commands.dispatch(&prepare, [i, row, 0, 0], 1);
-            commands.dispatch_indirect(&round, [i, 0, 0, 0], &b.workgroups);
+        let after = first + self.uniforms.dispatches("coloring", left, ROUNDS);
+        for i in first..after {
+            commands.dispatch(&prepare, [i, row, 0, 0], 1).await;
+            if i == first {
+                commands.dispatch(&round, [i, 0, 0, 0], left).await;
+            } else {
+                commands.dispatch_indirect(&round, [i, 0, 0, 0], &b.workgroups, left).await;
+            }
         }
-        commands.finish()?;
+        commands.finish().await?;
         // Who waits after the last round waits for the next one.
-        let (counters, waiting) = self.read(&[(&b.rounds, (first + ROUNDS) % 2)])?;
-        Ok((counters, waiting[0]))
+        let (counters, waiting) = self.read(&[(&b.rounds, after % 2)]).await?;
+        Ok((counters, after, waiting[0]))
     }
 
-    fn sort_by_class(&mut self, classes: u32) -> Result<(), Error> {
+    async fn sort_by_class(&mut self, classes: u32) -> Result<(), Error> {
         let n = self.params.points;
         let words = u64::from(classes) + 1 + u64::from(n);
         self.buffers.class_members.reserve(self.gpu, WORD * words)?;
@@ -478,16 +494,16 @@ impl Step<'_> {
         let mut commands = self.commands();
         commands.clear(&b.class_members, u64::from(classes) + 1);
         let count = self.kernels.get("class_count");
-        commands.run(count, &[&b.classes, &b.class_members, &b.cells], [0; 4], n);
-        self.record_scan(&mut commands, &b.class_members, 0, classes + 1);
+        commands.run(count, &[&b.classes, &b.class_members, &b.cells], [0; 4], n).await;
+        self.record_scan(&mut commands, &b.class_members, 0, classes + 1).await;
         let fill = self.kernels.get("sort_fill");
-        commands.run(fill, &[&b.cells, &b.class_members], [n, classes, 0, 0], n);
-        commands.finish()
+        commands.run(fill, &[&b.cells, &b.class_members], [n, classes, 0, 0], n).await;
+        commands.finish().await
     }
 
     /// `insertion`, class by class. `starts` is what [`Step::coloring`] returned, `left_over` what [`Step::conflicts`] did.
     /// Returns the number of new points.
-    pub(crate) fn insertion(&mut self, starts: &[u32], left_over: u32) -> Result<u32, Error> {
+    pub(crate) async fn insertion(&mut self, starts: &[u32], left_over: u32) -> Result<u32, Error> {
         let (n, candidates) = (u64::from(self.params.points), u64::from(self.params.candidates));
         self.buffers.next_radii.reserve(self.gpu, 2 * WORD * (n + candidates))?;
         self.buffers.new_indices.reserve(self.gpu, WORD * (candidates + 1))?;
@@ -496,20 +512,25 @@ impl Step<'_> {
         let mut part = largest.clamp(1, self.sizing.part);
         loop {
             self.params.arena_words = words_of(&self.buffers.arena);
-            self.record_insertion(starts, part, left_over & INSERTION != 0)?;
+            self.record_insertion(starts, part, left_over & INSERTION != 0).await?;
             let last = self.params.candidates;
-            let (counters, totals) = self.read(&[(&self.buffers.new_indices, last)])?;
+            let (counters, totals) = self.read(&[(&self.buffers.new_indices, last)]).await?;
             if self.make_room_in_arena(&counters, &mut part)? {
                 return Ok(totals[0]);
             }
             // The run that lacked memory has left marks on the candidates.
             let mut commands = self.commands();
-            self.record_candidates(&mut commands);
-            commands.finish()?;
+            self.record_candidates(&mut commands).await;
+            commands.finish().await?;
         }
     }
 
-    fn record_insertion(&self, starts: &[u32], part: u32, has_large: bool) -> Result<(), Error> {
+    async fn record_insertion(
+        &self,
+        starts: &[u32],
+        part: u32,
+        has_large: bool,
+    ) -> Result<(), Error> {
         let b = &*self.buffers;
         let Params { points, candidates, .. } = self.params;
         let mut commands = self.commands();
@@ -523,23 +544,23 @@ impl Step<'_> {
         let classes = starts.len() as u32 - 1;
         for (class, bounds) in (1..).zip(starts.windows(2)) {
             let count = bounds[1] - bounds[0];
-            commands.dispatch(&insertion, [class, bounds[0], count, classes], count);
+            commands.dispatch(&insertion, [class, bounds[0], count, classes], count).await;
             let Some(large) = &large else { continue };
             for first in (bounds[0]..bounds[1]).step_by(part as usize) {
                 let count = part.min(bounds[1] - first);
                 commands.clear_range(&b.counters, 0, 1);
-                commands.dispatch(large, [class, first, count, classes], count);
+                commands.dispatch(large, [class, first, count, classes], count).await;
             }
         }
         commands.clear(&b.new_indices, 1);
         let count = self.kernels.get("commit_count");
-        commands.run(count, &[&b.candidates, &b.new_indices], [0; 4], candidates);
-        self.record_scan(&mut commands, &b.new_indices, 0, candidates + 1);
-        commands.finish()
+        commands.run(count, &[&b.candidates, &b.new_indices], [0; 4], candidates).await;
+        self.record_scan(&mut commands, &b.new_indices, 0, candidates + 1).await;
+        commands.finish().await
     }
 
     /// `next_ring`: radii that cover the next level's rings.
-    pub(crate) fn next_ring(&mut self, left_over: u32) -> Result<(), Error> {
+    pub(crate) async fn next_ring(&mut self, left_over: u32) -> Result<(), Error> {
         fn buffers(b: &Buffers) -> Vec<&Buffer> {
             let inputs = [&b.points, &b.fans, &b.ring_entries, &b.candidates, &b.around];
             [&inputs[..], &[&b.next_radii, &b.arena, &b.counters, &b.curves]].concat()
@@ -550,17 +571,17 @@ impl Step<'_> {
         let n = self.params.points;
         let mut commands = self.commands();
         commands.clear(&self.buffers.counters, words_of(&self.buffers.counters).into());
-        commands.run(self.kernels.get("next_ring"), &buffers(self.buffers), [0, n, 0, 0], n);
-        commands.finish()?;
+        commands.run(self.kernels.get("next_ring"), &buffers(self.buffers), [0, n, 0, 0], n).await;
+        commands.finish().await?;
         if left_over & NEXT_RING != 0 {
             // Radii are maxima: a second run adds what the first one left out.
-            self.run_large("next_ring_large", buffers)?;
+            self.run_large("next_ring_large", buffers).await?;
         }
-        self.counters().map(|_| ())
+        self.counters().await.map(|_| ())
     }
 
     /// `commit`: appends the new points; `earlier` is the number of new points of earlier steps.
-    pub(crate) fn commit(&mut self, new: u32, earlier: u32) -> Result<(), Error> {
+    pub(crate) async fn commit(&mut self, new: u32, earlier: u32) -> Result<(), Error> {
         let point = size_of::<Point>() as u64;
         let n = u64::from(self.params.points);
         self.buffers.points.grow(self.gpu, point * (n + u64::from(new)), point * n)?;
@@ -572,8 +593,8 @@ impl Step<'_> {
         let kernel = self.kernels.get("commit");
         let buffers = [&inputs[..], &[&b.parents, &b.curves]].concat();
         let invocations = self.params.points.max(self.params.candidates);
-        commands.run(kernel, &buffers, [earlier, 0, 0, 0], invocations);
-        commands.finish()
+        commands.run(kernel, &buffers, [earlier, 0, 0, 0], invocations).await;
+        commands.finish().await
     }
 }
 

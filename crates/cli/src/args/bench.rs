@@ -3,6 +3,7 @@
 use super::NeighborhoodChoice;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
+use std::time::Duration;
 use surfine::{Boundary, RefineParams, Rules};
 
 /// Sizes without `--sizes`: as many of them as a minute for each backend and the memory allow.
@@ -48,6 +49,9 @@ pub(crate) struct BenchArgs {
     #[arg(long, value_name = "N", default_value = "3")]
     #[arg(value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub(crate) runs: u16,
+    /// Also refine on the GPU in slices of MS milliseconds, 0.1 to 1000, and tell what these take
+    #[arg(long, value_name = "MS", value_parser = budget)]
+    pub(crate) slice: Option<Duration>,
     /// Which points are neighbors
     #[arg(long, value_enum, value_name = "KIND", default_value_t)]
     neighborhood: NeighborhoodChoice,
@@ -126,6 +130,13 @@ fn size(text: &str) -> Result<usize, String> {
     };
     let points = digits.parse::<f64>().map_err(|_| wrong)? * unit;
     if (100.0..=1e8).contains(&points) { Ok(points.round() as usize) } else { Err(wrong.into()) }
+}
+
+/// Milliseconds: 4, 16.7.
+fn budget(text: &str) -> Result<Duration, String> {
+    let ms = text.parse::<f64>().ok().filter(|ms| (0.1..=1000.0).contains(ms));
+    let ms = ms.ok_or("it must be a number of milliseconds from 0.1 to 1000, like 4 or 16.7")?;
+    Ok(Duration::from_secs_f64(ms / 1e3))
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! Timed runs of one cloud on one backend.
 
+use super::slices::Sliced;
 use std::time::{Duration, Instant};
-use surfine::{Error, LevelReport, PointSet, RefineParams, Refined, Refiner, wgpu};
+use surfine::{Error, Gpu, LevelReport, PointSet, RefineParams, Refined, Refiner, wgpu};
 use surfine_points::add_stage_time;
 
 /// What is run, and how often it is measured.
@@ -27,6 +28,8 @@ pub(super) struct Measured {
     pub(super) runs: Vec<Run>,
     /// On a GPU, runs that read the result back.
     pub(super) read_back: Option<Vec<Run>>,
+    /// On a GPU, runs in slices, if they are wanted.
+    pub(super) sliced: Vec<Sliced>,
 }
 
 impl Measured {
@@ -54,7 +57,7 @@ pub(super) fn on_cpu(plan: &Plan<'_>) -> Result<Measured, surfine_reference::Err
         refined = refine()?;
         Ok::<_, surfine_reference::Error>(run(begin, &refined.reports))
     })?;
-    Ok(Measured { refined, runs, read_back: None })
+    Ok(Measured { refined, runs, read_back: None, sliced: Vec::new() })
 }
 
 pub(super) fn on_gpu(plan: &Plan<'_>, refiner: &mut Refiner) -> Result<Measured, Error> {
@@ -63,7 +66,7 @@ pub(super) fn on_gpu(plan: &Plan<'_>, refiner: &mut Refiner) -> Result<Measured,
     let runs = timed(plan, "", || {
         let begin = Instant::now();
         let result = refiner.refine_on_device(plan.points, plan.params, &mut |_| ())?;
-        wait(refiner)?;
+        wait(refiner.gpu())?;
         Ok::<_, Error>(run(begin, &result.reports))
     })?;
     let mut refined = Refined::default();
@@ -73,7 +76,7 @@ pub(super) fn on_gpu(plan: &Plan<'_>, refiner: &mut Refiner) -> Result<Measured,
         refined = refiner.refine(plan.points, plan.params)?;
         Ok::<_, Error>(run(begin, &refined.reports))
     })?;
-    Ok(Measured { refined, runs, read_back: Some(read_back) })
+    Ok(Measured { refined, runs, read_back: Some(read_back), sliced: Vec::new() })
 }
 
 /// Runs as often as planned, and sorts by time.
@@ -101,9 +104,13 @@ fn run(begin: Instant, reports: &[LevelReport]) -> Run {
 }
 
 /// The last commands may still run when a result that stays on the device is there.
-fn wait(refiner: &Refiner) -> Result<(), Error> {
-    let gpu = refiner.gpu();
+pub(super) fn wait(gpu: &Gpu) -> Result<(), Error> {
     let failed =
         |e: wgpu::PollError| Error::Device { adapter: gpu.name.clone(), message: e.to_string() };
     gpu.device.poll(wgpu::PollType::wait_indefinitely()).map(|_| ()).map_err(failed)
+}
+
+/// Milliseconds.
+pub(super) fn ms(time: Duration) -> f64 {
+    1e3 * time.as_secs_f64()
 }

@@ -2,6 +2,7 @@
 
 use super::clouds::Cloud;
 use super::measure::{Measured, Run, median};
+use super::slices::Sliced;
 use crate::adapters::Description;
 use crate::report::{Params, in_order, per_second};
 use serde::Serialize;
@@ -54,6 +55,8 @@ pub(super) struct Case {
     /// The result stays on the device.
     pub(super) gpu: Option<Side>,
     pub(super) gpu_read_back: Option<Pace>,
+    /// Two runs, if `--slice` asks for them.
+    pub(super) gpu_sliced: Vec<Sliced>,
     /// Whether both backends gave the same bytes.
     pub(super) same_bytes: Option<bool>,
     /// Where they did not.
@@ -123,6 +126,7 @@ impl Case {
             cpu: cpu.map(|cpu| Side::new(cpu, cpu_speed)),
             gpu: gpu.map(|gpu| Side::new(gpu, cpu_speed)),
             gpu_read_back: read_back.map(|(gpu, r)| Pace::new(r, new_points(gpu), cpu_speed)),
+            gpu_sliced: gpu.map(|gpu| gpu.sliced.clone()).unwrap_or_default(),
             same_bytes: cpu.and(gpu).map(|_| difference.is_none()),
             difference,
         }

@@ -84,6 +84,9 @@ fn write_cases(f: &mut Formatter<'_>, cases: &[Case]) -> fmt::Result {
         if let Some(pace) = &case.gpu_read_back {
             write_pace(f, &counts, "gpu, read back", pace, None)?;
         }
+        for sliced in &case.gpu_sliced {
+            writeln!(f, "{}  {sliced}", " ".repeat(counts.len()))?;
+        }
     }
     Ok(())
 }
