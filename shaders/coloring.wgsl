@@ -1,9 +1,10 @@
 // coloring: one round of a colouring of the conflict graph (Jones and Plassmann 1993).
 // Twin: crates/reference/src/coloring.rs
-// One invocation per point that waits. dispatch: number of the round.
+// One invocation per point that waits, then one per point of the next range of priorities. dispatch: number of the round.
 //
 // A point takes the lowest class that none of those in conflict with it has that choose before it, once these all have one. So
-// the classes are those of a sequential loop by priority, whatever rounds it takes to reach them.
+// the classes are those of a sequential loop by priority, whatever rounds it takes to reach them. Most points choose in the round
+// of their range.
 
 @group(0) @binding(2) var<storage, read> fans: array<Fan>;
 /// Lists of candidates around points and of conflicts.
@@ -12,22 +13,28 @@
 @group(0) @binding(5) var<storage, read> mirror_links: array<vec2<u32>>;
 /// One more than the class of each point; 0 for none yet.
 @group(0) @binding(6) var<storage, read_write> classes: array<atomic<u32>>;
-/// The points that wait in even rounds, then those that wait in odd ones. In the first round all do.
-@group(0) @binding(7) var<storage, read_write> waiting: array<u32>;
+/// The first point of each range of priorities and one more, then the points by range.
+@group(0) @binding(7) var<storage, read> order: array<u32>;
+/// The points that wait in even rounds, then those that wait in odd ones.
+@group(0) @binding(8) var<storage, read_write> waiting: array<u32>;
 /// Number of both.
-@group(0) @binding(8) var<storage, read_write> rounds: array<atomic<u32>, 2>;
-@group(0) @binding(9) var<storage, read_write> counters: Counters;
+@group(0) @binding(9) var<storage, read_write> rounds: array<atomic<u32>, 2>;
+@group(0) @binding(10) var<storage, read_write> counters: Counters;
 
 @compute @workgroup_size(64)
 fn coloring(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear_index(id, groups);
     let parity = dispatch.x & 1u;
-    if i >= atomicLoad(&rounds[parity]) {
-        return;
-    }
-    var p = i;
-    if dispatch.x > 0u {
+    let left = atomicLoad(&rounds[parity]);
+    var p = 0u;
+    if i < left {
         p = waiting[parity * params.points + i];
+    } else {
+        let member = order[min(dispatch.x, RANGES)] + i - left;
+        if member >= order[min(dispatch.x + 1u, RANGES)] {
+            return;
+        }
+        p = order[RANGES + 1u + member];
     }
     // Classes are looked at in windows of 32.
     for (var window = 0u; ; window += 32u) {

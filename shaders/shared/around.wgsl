@@ -115,11 +115,3 @@ fn note_conflicts(p: u32, corners: vec3<u32>, found: u32) -> u32 {
     set_word(FOUND, size, corners.z);
     return size + u32(!known.z);
 }
-
-/// The priority of a point: a bijection of the 32-bit integers without visible order (lowbias32, C. Wellons).
-fn scramble(id: u32) -> u32 {
-    var x = id;
-    x = (x ^ (x >> 16u)) * 0x7feb352du;
-    x = (x ^ (x >> 15u)) * 0x846ca68bu;
-    return x ^ (x >> 16u);
-}

@@ -66,23 +66,22 @@ impl<'a> Commands<'a> {
         }
     }
 
-    /// Records a dispatch of as many workgroups as the first three words of a buffer say when it runs, for at most so many
-    /// invocations. It is not cut, but waits for the next slice if these don't fit.
+    /// Records a dispatch of as many workgroups as the first three words of a buffer say when it runs, for about so many
+    /// invocations, or few if none are said. It is not cut, but waits for the next slice if these don't fit.
     pub async fn dispatch_indirect(
         &mut self,
         bound: &Bound<'_>,
         words: [u32; 4],
         groups: &Buffer,
-        most: u32,
+        about: u32,
     ) {
         self.make_room().await;
-        if self.uniforms.take(self.gpu, bound.kernel.name(), most) < most {
+        if self.uniforms.take(self.gpu, bound.kernel.name(), about) < about {
             self.flush();
             self.settle().await;
-            self.uniforms.take(self.gpu, bound.kernel.name(), most);
+            self.uniforms.take(self.gpu, bound.kernel.name(), about);
         }
-        // Of none: its time says nothing, as their number is not known.
-        self.record(bound, (words, 0), 0, |pass| {
+        self.record(bound, (words, 0), about, |pass| {
             pass.dispatch_workgroups_indirect(groups.raw(), 0);
         });
     }

@@ -63,12 +63,6 @@ impl Pace {
         self.left -= words as f64 * CLEARED_WORD;
     }
 
-    /// How many dispatches of so many invocations fit in a whole slice; at least one.
-    pub(crate) fn dispatches(&self, kernel: &str, invocations: u32) -> u32 {
-        let each = f64::from(invocations) * self.seconds(kernel) + DISPATCH;
-        ((self.whole / each) as u32).max(1)
-    }
-
     /// What a dispatch is expected to take, in seconds.
     pub(crate) fn expected(&self, kernel: &str, invocations: u32) -> f64 {
         f64::from(invocations) * self.seconds(kernel) + DISPATCH

@@ -12,11 +12,14 @@ use crate::shaders::SHADERS;
 use crate::uniforms::Uniforms;
 use crate::{Error, Gpu};
 use std::mem::offset_of;
+use std::ops::Range;
 use surfine_features::Gap;
 use surfine_points::{Neighborhood, RefineParams};
 
-/// Rounds of colouring between two looks at what is left.
-const ROUNDS: u32 = 24;
+/// Ranges of priorities: as many rounds of colouring have points that were not there before.
+const RANGES: u32 = 32;
+/// Rounds after these, or between two looks at what is left.
+const ROUNDS: u32 = 8;
 /// Bytes of a word.
 const WORD: u64 = 4;
 
@@ -427,14 +430,17 @@ impl Step<'_> {
         loop {
             self.params.mirror_links = words_of(&self.buffers.mirror_links) / 2;
             self.record_mirror().await?;
-            let (mut counters, mut round, mut left) = self.run_rounds(0, n).await?;
+            self.sort_by_priority().await?;
+            let mut round = RANGES + ROUNDS;
+            let (mut counters, mut left) = self.run_rounds(0..round).await?;
             let links = counters.mirrored;
             if links > self.params.mirror_links {
                 self.buffers.mirror_links.reserve(self.gpu, 2 * WORD * u64::from(links))?;
                 continue;
             }
             while left > 0 {
-                (counters, round, left) = self.run_rounds(round, left).await?;
+                (counters, left) = self.run_rounds(round..round + ROUNDS).await?;
+                round += ROUNDS;
             }
             self.sort_by_class(counters.classes).await?;
             let bytes = WORD * (u64::from(counters.classes) + 1);
@@ -458,47 +464,68 @@ impl Step<'_> {
         commands.finish().await
     }
 
-    /// Some rounds of colouring, from that number on, of so many points that wait. Returns the counters, the next round and
-    /// how many points are left.
-    async fn run_rounds(&self, first: u32, left: u32) -> Result<(Counters, u32, u32), Error> {
+    async fn sort_by_priority(&mut self) -> Result<(), Error> {
+        let n = self.params.points;
+        self.reserve_members(RANGES)?;
+        let b = &*self.buffers;
+        let mut commands = self.commands();
+        commands.clear(&b.rounds, 2);
+        commands.clear(&b.class_members, u64::from(RANGES) + 1);
+        let count = self.kernels.get("coloring_order");
+        commands.run(count, &[&b.class_members, &b.cells], [0; 4], n).await;
+        self.record_members(&mut commands, RANGES).await;
+        commands.finish().await
+    }
+
+    /// Some rounds of colouring. Returns the counters and how many points are left.
+    async fn run_rounds(&self, rounds: Range<u32>) -> Result<(Counters, u32), Error> {
         let b = &*self.buffers;
         let mut commands = self.commands();
         let graph = [&b.fans, &b.around, &b.mirror_heads, &b.mirror_links];
-        let state = [&b.classes, &b.waiting, &b.rounds, &b.counters];
+        let state = [&b.classes, &b.class_members, &b.waiting, &b.rounds, &b.counters];
         let round = commands.bind(self.kernels.get("coloring"), &[&graph[..], &state].concat());
-        let prepare =
-            commands.bind(self.kernels.get("coloring_round"), &[&b.rounds, &b.workgroups]);
+        let prepare = [&b.rounds, &b.class_members, &b.workgroups];
+        let prepare = commands.bind(self.kernels.get("coloring_round"), &prepare);
         let row = self.gpu.device.limits().max_compute_workgroups_per_dimension;
-        let after = first + self.uniforms.dispatches("coloring", left, ROUNDS);
-        for i in first..after {
+        for i in rounds.clone() {
             commands.dispatch(&prepare, [i, row, 0, 0], 1).await;
-            if i == first {
-                commands.dispatch(&round, [i, 0, 0, 0], left).await;
-            } else {
-                commands.dispatch_indirect(&round, [i, 0, 0, 0], &b.workgroups, left).await;
-            }
+            // After the last range few wait.
+            let about = if i < RANGES { self.params.points.div_ceil(RANGES) } else { 0 };
+            commands.dispatch_indirect(&round, [i, 0, 0, 0], &b.workgroups, about).await;
         }
         commands.finish().await?;
         // Who waits after the last round waits for the next one.
-        let (counters, waiting) = self.read(&[(&b.rounds, after % 2)]).await?;
-        Ok((counters, after, waiting[0]))
+        let (counters, waiting) = self.read(&[(&b.rounds, rounds.end % 2)]).await?;
+        Ok((counters, waiting[0]))
     }
 
     async fn sort_by_class(&mut self, classes: u32) -> Result<(), Error> {
         let n = self.params.points;
-        let words = u64::from(classes) + 1 + u64::from(n);
-        self.buffers.class_members.reserve(self.gpu, WORD * words)?;
-        self.buffers.cells.reserve(self.gpu, 2 * WORD * u64::from(n))?;
-        self.scan.reserve(self.gpu, classes + 1)?;
+        self.reserve_members(classes)?;
         let b = &*self.buffers;
         let mut commands = self.commands();
         commands.clear(&b.class_members, u64::from(classes) + 1);
         let count = self.kernels.get("class_count");
         commands.run(count, &[&b.classes, &b.class_members, &b.cells], [0; 4], n).await;
-        self.record_scan(&mut commands, &b.class_members, 0, classes + 1).await;
+        self.record_members(&mut commands, classes).await;
+        commands.finish().await
+    }
+
+    /// Makes room for the points by class, or by range of priorities.
+    fn reserve_members(&mut self, classes: u32) -> Result<(), Error> {
+        let n = self.params.points;
+        let words = u64::from(classes) + 1 + u64::from(n);
+        self.buffers.class_members.reserve(self.gpu, WORD * words)?;
+        self.buffers.cells.reserve(self.gpu, 2 * WORD * u64::from(n))?;
+        self.scan.reserve(self.gpu, classes + 1)
+    }
+
+    /// Records the second half of the sort by class.
+    async fn record_members(&self, commands: &mut Commands<'_>, classes: u32) {
+        let (b, n) = (&*self.buffers, self.params.points);
+        self.record_scan(commands, &b.class_members, 0, classes + 1).await;
         let fill = self.kernels.get("sort_fill");
         commands.run(fill, &[&b.cells, &b.class_members], [n, classes, 0, 0], n).await;
-        commands.finish().await
     }
 
     /// `insertion`, class by class. `starts` is what [`Step::coloring`] returned, `left_over` what [`Step::conflicts`] did.

@@ -124,11 +124,6 @@ impl Uniforms {
         pace.take(kernel, wanted.min(most))
     }
 
-    /// How many dispatches of so many invocations may follow each other before the host looks.
-    pub(crate) fn dispatches(&self, kernel: &str, invocations: u32, most: u32) -> u32 {
-        self.pace().map_or(most, |pace| pace.dispatches(kernel, invocations).min(most))
-    }
-
     /// Notes that so many words are zeroed.
     pub(crate) fn note_clear(&self, words: u64) {
         if let Some(mut pace) = self.pace() {
