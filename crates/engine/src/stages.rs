@@ -36,7 +36,7 @@ pub struct Sizing {
 
 impl Default for Sizing {
     fn default() -> Self {
-        Self { chunk: 1 << 17, part: u32::MAX, entries: 24 }
+        Self { chunk: 1 << 17, part: u32::MAX, entries: 18 }
     }
 }
 

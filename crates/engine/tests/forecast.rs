@@ -62,7 +62,7 @@ fn uneven_clouds_take_no_more_than_is_foretold_for_them() {
 #[test]
 fn what_is_sure_to_fail_fails_before_the_first_stage() {
     let mut refiner = refiner(1 << 20);
-    let sphere = sample(Shape::Sphere, Sampling::BlueNoise, 9000, 1);
+    let sphere = sample(Shape::Sphere, Sampling::BlueNoise, 12_000, 1);
     let foretold = refiner.forecast(&sphere, &levels(2)).unwrap_err();
     let mut stages = Vec::new();
     let failure = refiner.refine_on_device(&sphere, &levels(2), &mut |at| stages.push(at.stage));
@@ -72,7 +72,7 @@ fn what_is_sure_to_fail_fails_before_the_first_stage() {
     let Error::TooLarge { level, levels, points, need, have, .. } = failure else {
         panic!("{failure}");
     };
-    assert_eq!((level, levels, points), (1, 2, 9000));
+    assert_eq!((level, levels, points), (1, 2, 12_000));
     assert!(need > have && have == 1 << 20, "{need} and {have}");
     // Without a step nothing but the cloud is needed.
     refiner.refine(&sphere, &self::levels(0)).unwrap();
@@ -81,7 +81,7 @@ fn what_is_sure_to_fail_fails_before_the_first_stage() {
 #[test]
 fn what_is_only_likely_to_fail_is_tried() {
     let mut refiner = refiner(1 << 20);
-    let sphere = sample(Shape::Sphere, Sampling::BlueNoise, 3000, 1);
+    let sphere = sample(Shape::Sphere, Sampling::BlueNoise, 4000, 1);
     refiner.refine(&sphere, &levels(1)).unwrap();
     let forecast = refiner.forecast(&sphere, &levels(2)).unwrap();
     assert!(forecast.largest_buffer.1 > 1 << 20, "{forecast:?}");
@@ -95,5 +95,5 @@ fn what_is_only_likely_to_fail_is_tried() {
     // Points without neighbours stay as few as they are.
     let mut lonely = sphere;
     lonely.radii.fill(1e-4);
-    assert_eq!(refiner.refine(&lonely, &levels(2)).unwrap().points.len(), 3000);
+    assert_eq!(refiner.refine(&lonely, &levels(2)).unwrap().points.len(), 4000);
 }
