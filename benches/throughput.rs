@@ -30,7 +30,10 @@ struct Case {
 
 impl Case {
     fn new(name: &'static str, points: PointSet, levels: u32) -> Self {
-        let params = RefineParams { levels, ..RefineParams::default() };
+        Self::with_params(name, points, RefineParams { levels, ..RefineParams::default() })
+    }
+
+    fn with_params(name: &'static str, points: PointSet, params: RefineParams) -> Self {
         let refined = reference::refine(&points, &params).expect("generated clouds are fit");
         let is_large = points.len() > 200_000;
         Self { name, points, params, new_points: refined.parents.len() as u64, is_large }
@@ -167,7 +170,14 @@ fn bench(criterion: &mut Criterion, is_test: bool) {
     refine.finish();
 
     let mut levels = group(criterion, "levels");
-    bench_runs(&mut levels, &Case::new("1k", sphere(1_000), 3), "3", &mut device);
+    let (name, points) = if is_test { ("1k", 1_000) } else { ("50k", 50_000) };
+    let cloud = sphere(points);
+    let simplified = RefineParams { levels: 3, simplified: true, ..RefineParams::default() };
+    for case in
+        [Case::new(name, cloud.clone(), 3), Case::with_params("simplified", cloud, simplified)]
+    {
+        bench_runs(&mut levels, &case, case.name, &mut device);
+    }
     levels.finish();
 
     let case = cases.iter().find(|case| case.name == "10k").expect("it is in both lists");
