@@ -56,7 +56,8 @@ fn conflicts(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
         return;
     }
     let reach = reach_of(p);
-    let size = gather(p, query_radius(p, reach));
+    // All, also those in the point's own place.
+    let size = list_within(points[p].position, query_radius(p, reach), -1.0);
     if !fits(size + 1u) || !store(p, reach, size) {
         fans[p].left_over = CONFLICTS;
         atomicOr(&counters.left_over, CONFLICTS);
@@ -97,25 +98,6 @@ fn reach_of_candidate(p: u32, reach: Reach, sphere: f32) -> f32 {
 fn query_radius(p: u32, reach: Reach) -> f32 {
     let widest = params.lambda2 * bitcast<f32>(atomicLoad(&counters.widest));
     return max(reach_of_candidate(p, reach, widest), reach.conflicts);
-}
-
-/// Lists the candidates within a distance, and returns how many they are, of which no more are listed than fit.
-fn gather(p: u32, distance: f32) -> u32 {
-    let center = points[p].position;
-    var size = 0u;
-    var walk = ball_walk(center, distance);
-    while !is_over(walk) {
-        let entries = next_entries(&walk);
-        for (var i = entries.x; i < entries.y; i++) {
-            let entry = places[i];
-            let d = bitcast<vec3<f32>>(entry.xyz) - center;
-            let d2 = dot3(d, d);
-            // Written in any case: branches that neighbouring points take differently cost more.
-            set_word(ID, size, entry.w);
-            size += u32(d2 <= distance * distance);
-        }
-    }
-    return size;
 }
 
 fn curve_word(at: u32) -> u32 {

@@ -5,19 +5,7 @@
 
 /// How many words the rows must hold: the corners of each candidate may be in conflict.
 fn count_members(p: u32) -> u32 {
-    let distance = query_radius(p, reach_of(p));
-    let center = points[p].position;
-    var size = 0u;
-    var walk = ball_walk(center, distance);
-    while !is_over(walk) {
-        let entries = next_entries(&walk);
-        for (var i = entries.x; i < entries.y; i++) {
-            let entry = places[i];
-            let d = bitcast<vec3<f32>>(entry.xyz) - center;
-            size += u32(dot3(d, d) <= distance * distance);
-        }
-    }
-    return 3u * size + 1u;
+    return 3u * count_within(points[p].position, query_radius(p, reach_of(p))) + 1u;
 }
 
 /// Number of candidates that a point sees, and of points in conflict with it.

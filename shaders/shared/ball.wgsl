@@ -20,38 +20,12 @@ const DOUBTFUL_SHARE: f32 = 0.5;
 /// Lists N^E (eq. 7), all points within the radius but those in the same place. Returns how many they are, of which no more
 /// are listed than fit.
 fn gather_ball(p: u32) -> u32 {
-    let center = points[p];
-    var size = 0u;
-    var walk = ball_walk(center.position, center.radius);
-    while !is_over(walk) {
-        let entries = next_entries(&walk);
-        for (var i = entries.x; i < entries.y; i++) {
-            let entry = places[i];
-            let d = bitcast<vec3<f32>>(entry.xyz) - center.position;
-            let d2 = dot3(d, d);
-            // Written in any case: branches that neighbouring points take differently cost more.
-            set_word(ID, size, entry.w);
-            let inside = entry.w != p & d2 <= center.radius * center.radius & is_apart(d2, center.radius);
-            size += u32(inside);
-        }
-    }
-    return size;
+    return list_within(points[p].position, points[p].radius, one_place(points[p].radius));
 }
 
 /// How many words the rows must hold, with one for what is written and then not kept.
 fn count_members(p: u32) -> u32 {
-    let center = points[p];
-    var size = 0u;
-    var walk = ball_walk(center.position, center.radius);
-    while !is_over(walk) {
-        let entries = next_entries(&walk);
-        for (var i = entries.x; i < entries.y; i++) {
-            let entry = places[i];
-            let d = bitcast<vec3<f32>>(entry.xyz) - center.position;
-            size += u32(dot3(d, d) <= center.radius * center.radius);
-        }
-    }
-    return size + 1u;
+    return count_within(points[p].position, points[p].radius) + 1u;
 }
 
 /// Keeps the members that eq. 6 does not reject, lays them onto the tangent plane, and returns how many are left.

@@ -22,7 +22,12 @@ fn unit(v: vec3<f32>) -> vec3<f32> {
 /// Whether points at this squared distance have a direction to each other, seen at the scale of a radius. Nearer ones
 /// count as being in one place.
 fn is_apart(squared_distance: f32, radius: f32) -> bool {
-    return squared_distance > radius * radius * 1e-12;
+    return squared_distance > one_place(radius);
+}
+
+/// The largest squared distance at which points count as being in one place.
+fn one_place(radius: f32) -> f32 {
+    return radius * radius * 1e-12;
 }
 
 /// Two unit vectors that span the plane of normal n, counter-clockwise seen from outside.
