@@ -21,6 +21,9 @@ pub const DOUBTFUL: f32 = 0.5;
 /// A ring gap from 100° on may miss a natural neighbour, radians.
 pub const OPEN_GAP: f32 = 1.745_329_3;
 
+/// By less do the angles between members, and the differences of their angles, differ.
+const ROUNDINGS: f32 = 1e-4;
+
 /// A corner of a triangle fan.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RingEntry {
@@ -190,7 +193,9 @@ fn one_ring(level: &Level, p: usize, own: Range<usize>, scratch: &mut Scratch, f
     if filter.rules.natural_neighbors && has_open_gap(ring) {
         let comes_back = |i: &usize| {
             let may = ball.verdicts[*i] != OUT && !ball.is_neighbor(*i);
-            may && is_in_open_gap(ball, kept.members(), *i) && is_natural(ball, *i)
+            may && may_be_in_open_gap(ball, kept.members(), *i)
+                && is_in_open_gap(ball, kept.members(), *i)
+                && is_natural(ball, *i)
         };
         back.clear();
         back.extend((0..ball.len()).filter(comes_back));
@@ -211,11 +216,23 @@ fn sort_ring(ball: Ball<'_>, kept: &mut Around, ring: &mut Vec<RingEntry>) {
 
 /// Whether two entries that follow each other may leave an open gap: whether anything may come back.
 fn has_open_gap(ring: &[RingEntry]) -> bool {
-    // Angles between members and angles of members differ by some roundings.
-    let open = OPEN_GAP - 1e-4;
+    let open = OPEN_GAP - ROUNDINGS;
     let angle = |i: usize| ring[i].angle;
     let wraps = ring.is_empty() || angle(0) + TAU - angle(ring.len() - 1) >= open;
     wraps || (1..ring.len()).any(|i| angle(i) - angle(i - 1) >= open)
+}
+
+/// Whether [`is_in_open_gap`] has to be asked: most members are far from open gaps, which their angles tell at less cost.
+fn may_be_in_open_gap(ball: Ball<'_>, kept: &[u32], i: usize) -> bool {
+    let (mut after, mut before) = (TAU, TAU);
+    for &j in kept {
+        let turn = ball.angle[j as usize] - ball.angle[i];
+        let turn = if turn < 0.0 { turn + TAU } else { turn };
+        after = after.min(turn);
+        before = before.min(TAU - turn);
+    }
+    // Where one is at the member's own angle, roundings decide on which side it is.
+    after.min(before) < ROUNDINGS || after + before >= OPEN_GAP - ROUNDINGS
 }
 
 /// Whether the kept members next to member `i` on both sides leave a gap that may miss a neighbour.

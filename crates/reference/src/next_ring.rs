@@ -7,7 +7,6 @@
 
 use crate::ball::{Around, Center, Members};
 use crate::insertion::{COVER, Insertion, Stage, raise};
-use crate::lists::choose;
 use crate::math::{PI, TAU, is_apart};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -50,8 +49,6 @@ pub fn next_ring(stage: Stage<'_>, insertion: &Insertion) -> Covers {
 struct Scratch {
     /// What may be on the next rings of a batch: old points by index, then candidates.
     members: Members,
-    /// New points within the new radius of a point.
-    near: Vec<u32>,
     kept: Around,
     ring: Vec<Member>,
 }
@@ -95,22 +92,19 @@ fn gather(stage: Stage<'_>, insertion: &Insertion, p: usize, scratch: &mut Scrat
     let members = &mut scratch.members;
     let (ring, around) = (rings.ring(p), conflicts.around.of(p));
     members.prepare(ring.len() + around.len());
-    let mut add = |id: u32, d: Vec3, other: Vec3| {
-        members.offer(id, d, other, is_apart(d.dot(d), center.radius));
+    let mut add = |id: u32, d: Vec3, other: Vec3, is_wanted: bool| {
+        members.offer(id, d, other, is_wanted & is_apart(d.dot(d), center.radius));
     };
     for entry in ring {
         let i = entry.id as usize;
-        add(entry.id, level.positions[i] - center.position, level.normals[i]);
+        add(entry.id, level.positions[i] - center.position, level.normals[i], true);
     }
     let limit = insertion.radii[p] * insertion.radii[p];
-    let is_near = |c: u32| {
-        let d = candidates.positions[c as usize] - center.position;
-        insertion.is_inserted(c as usize) & (d.dot(d) <= limit)
-    };
-    for &c in choose(around, is_near, &mut scratch.near) {
+    for &c in around {
         let i = c as usize;
         let d = candidates.positions[i] - center.position;
-        add(level.len() as u32 + c, d, candidates.normals[i]);
+        let is_near = insertion.is_inserted(i) & (d.dot(d) <= limit);
+        add(level.len() as u32 + c, d, candidates.normals[i], is_near);
     }
     members.end(&center);
 }
