@@ -370,16 +370,17 @@ vectorized! {
         let ([ox, oy, oz], [x, y]) = (offsets, directions);
         let count = x.len();
         let (ox, oy, oz) = (&ox[..count], &oy[..count], if SPATIAL { &oz[..count] } else { oz });
+        let dot = |a: Vec3, b: Vec3| if SPATIAL { a.dot(b) } else { a.x * b.x + a.y * b.y };
         let at = |i: usize| Vec3::new(ox[i], oy[i], if SPATIAL { oz[i] } else { 0.0 });
         let (y, successor, predecessor) =
             (&y[..count], &mut successor[..count], &mut predecessor[..count]);
         for j in (0..verdicts.len()).filter(|&j| verdicts[j] == SURE) {
             let (other, xj, yj) = (at(j), x[j], y[j]);
-            let length = other.dot(other);
+            let length = dot(other, other);
             for i in 0..count {
                 let c = at(i) - other;
-                let product = length * c.dot(c);
-                let along = other.dot(c);
+                let product = length * dot(c, c);
+                let along = dot(other, c);
                 let sine = along * along.abs() / product;
                 // The member itself, and others in its place, count for nothing.
                 let sine = unless(product == 0.0, sine);
@@ -477,6 +478,23 @@ mod tests {
             for i in 0..ball.len() {
                 let plain = plain_badness(ball.x, ball.y, ball.verdicts, i, 0.5);
                 assert_eq!(ball.badness[i].to_bits(), plain.to_bits(), "{i} of {count}");
+            }
+        }
+    }
+
+    #[test]
+    fn members_are_ranked_by_angle_then_index() {
+        for count in [0u32, 1, 7, 8, 9, 30] {
+            let (mut around, mut expected) = (Around::default(), Vec::new());
+            around.prepare(count as usize);
+            for i in 0..count {
+                let (angle, id) = ((i * 7 % 5) as f32, i * 11 % 31);
+                around.offer(i, angle, id, i % 4 != 3);
+                expected.extend((i % 4 != 3).then_some((angle.to_bits(), id, i as usize)));
+            }
+            expected.sort_unstable();
+            for (member, rank) in around.sorted() {
+                assert_eq!(expected[rank].2, member, "of {count}");
             }
         }
     }
