@@ -3,7 +3,7 @@
 
 use crate::Level;
 use crate::angles::direction_angles;
-use crate::columns::{BLOCK, Column, LANES, Vectors, vectorized};
+use crate::columns::{BLOCK, Column, LANES, vectorized};
 use crate::pn_triangle::geodesic_distance;
 use glam::Vec3;
 use std::ops::Range;
@@ -35,41 +35,75 @@ impl Center {
     }
 }
 
-/// Centres with one member each.
-#[derive(Clone, Copy)]
+/// Centres with one member each, in columns.
+#[derive(Default)]
 pub(crate) struct Pairs {
     /// From the centre to the member.
-    d: Vectors,
-    normal: Vectors,
-    other: Vectors,
+    d: [Vec<f32>; 3],
+    normal: [Vec<f32>; 3],
+    other: [Vec<f32>; 3],
     /// Of `d` in the frame of the tangent plane.
-    x: Column,
-    y: Column,
-    inverse_radius: Column,
+    plane: [Vec<f32>; 2],
+    inverse_radius: Vec<f32>,
 }
 
 impl Pairs {
-    const EMPTY: Self = Self {
-        d: Vectors::ZERO,
-        normal: Vectors::ZERO,
-        other: Vectors::ZERO,
-        x: [0.0; BLOCK],
-        y: [0.0; BLOCK],
-        inverse_radius: [0.0; BLOCK],
-    };
-
-    fn set(&mut self, i: usize, center: &Center, d: Vec3, other: Vec3) {
-        self.d.set(i, d);
-        self.normal.set(i, center.normal);
-        self.other.set(i, other);
-        (self.x[i], self.y[i]) = (d.dot(center.frame.0), d.dot(center.frame.1));
-        self.inverse_radius[i] = center.inverse_radius;
+    fn resize(&mut self, room: usize) {
+        let Self { d, normal, other, plane, inverse_radius } = self;
+        let columns = d.iter_mut().chain(normal).chain(other).chain(plane).chain([inverse_radius]);
+        columns.for_each(|column| column.resize(room, 0.0));
     }
 
+    #[inline(always)]
+    fn set(&mut self, i: usize, d: Vec3, other: Vec3) {
+        for axis in 0..3 {
+            (self.d[axis][i], self.other[axis][i]) = (d[axis], other[axis]);
+        }
+    }
+
+    /// Gives pairs their centre.
+    fn set_center(&mut self, own: Range<usize>, center: &Center) {
+        let Self { d, normal, plane, inverse_radius, .. } = self;
+        for (column, value) in normal.iter_mut().zip(center.normal.to_array()) {
+            column[own.clone()].fill(value);
+        }
+        inverse_radius[own.clone()].fill(center.inverse_radius);
+        let d = d.each_ref().map(|column| &column[own.clone()]);
+        let [x, y] = plane.each_mut().map(|column| &mut column[own.clone()]);
+        along(d, center.frame.0, x);
+        along(d, center.frame.1, y);
+    }
+
+    fn block(&self, block: usize) -> Block<'_> {
+        fn of(column: &[f32], block: usize) -> &Column {
+            &column.as_chunks().0[block]
+        }
+        Block {
+            d: self.d.each_ref().map(|column| of(column, block)),
+            normal: self.normal.each_ref().map(|column| of(column, block)),
+            other: self.other.each_ref().map(|column| of(column, block)),
+            plane: self.plane.each_ref().map(|column| of(column, block)),
+            inverse_radius: of(&self.inverse_radius, block),
+        }
+    }
+}
+
+/// A block of [`Pairs`].
+#[derive(Clone, Copy)]
+pub(crate) struct Block<'a> {
+    d: [&'a Column; 3],
+    normal: [&'a Column; 3],
+    other: [&'a Column; 3],
+    plane: [&'a Column; 2],
+    inverse_radius: &'a Column,
+}
+
+impl Block<'_> {
     /// The vector between the points of a pair, and their normals.
     #[inline(always)]
     pub(crate) fn get(&self, i: usize) -> (Vec3, Vec3, Vec3) {
-        (self.d.get(i), self.normal.get(i), self.other.get(i))
+        let at = |columns: [&Column; 3]| Vec3::from_array(columns.map(|column| column[i]));
+        (at(self.d), at(self.normal), at(self.other))
     }
 }
 
@@ -82,19 +116,22 @@ pub(crate) const SURE: Verdict = 1;
 /// It may lie on another sheet: then it is no neighbour unless a gap stays open, and hides none.
 pub(crate) const DOUBT: Verdict = 2;
 
-/// The members of many neighbourhoods, one after the other.
+/// The members of many neighbourhoods, one after the other. Columns are longer than there are members.
 #[derive(Default)]
 pub(crate) struct Members {
+    len: usize,
+    /// Where the members of each neighbourhood end.
+    ends: Vec<usize>,
     pub(crate) ids: Vec<u32>,
-    pub(crate) pairs: Vec<Pairs>,
+    pairs: Pairs,
     /// Orthogonal projections `q_i`, up to positive factors, in units of the radius; for the accurate neighbourhood `q'_i` (eq. 9).
-    x: Vec<Column>,
-    y: Vec<Column>,
-    angle: Vec<Column>,
+    x: Vec<f32>,
+    y: Vec<f32>,
+    angle: Vec<f32>,
     /// The vectors whose fuzzy planes are tested, for the fuzzy neighbourhood: `p_i - p`. For the accurate one they are
     /// `q'_i - p`, which is (x, y).
-    offset: [Vec<Column>; 3],
-    pub(crate) verdicts: Vec<[Verdict; BLOCK]>,
+    offset: [Vec<f32>; 3],
+    pub(crate) verdicts: Vec<Verdict>,
     successor: Vec<f32>,
     predecessor: Vec<f32>,
 }
@@ -108,71 +145,93 @@ pub(crate) struct Ball<'a> {
     pub(crate) angle: &'a [f32],
     pub(crate) verdicts: &'a [Verdict],
     badness: &'a [f32],
-    /// All pairs, and the first of the neighbourhood.
-    pairs: &'a [Pairs],
-    first: usize,
+    d: [&'a [f32]; 3],
 }
 
 impl Members {
     pub(crate) fn clear(&mut self) {
-        self.ids.clear();
-        self.pairs.clear();
+        self.len = 0;
+        self.ends.clear();
     }
 
     pub(crate) fn len(&self) -> usize {
-        self.ids.len()
+        self.len
     }
 
-    pub(crate) fn push(&mut self, id: u32, center: &Center, d: Vec3, other: Vec3) {
-        let i = self.ids.len() % BLOCK;
-        if i == 0 {
-            self.pairs.push(Pairs::EMPTY);
+    /// Makes room for so many more members.
+    pub(crate) fn prepare(&mut self, count: usize) {
+        // Whole blocks are read, and the members of a neighbourhood in multiples of `LANES`.
+        let room = self.len + count + BLOCK;
+        if self.ids.len() >= room {
+            return;
         }
-        if let Some(pairs) = self.pairs.last_mut() {
-            pairs.set(i, center, d, other);
-        }
-        self.ids.push(id);
+        let room = (2 * room).next_multiple_of(BLOCK);
+        self.ids.resize(room, 0);
+        self.verdicts.resize(room, OUT);
+        self.pairs.resize(room);
+        let columns = [&mut self.x, &mut self.y, &mut self.angle];
+        columns.into_iter().chain(&mut self.offset).for_each(|column| column.resize(room, 0.0));
+    }
+
+    /// Adds a member to the neighbourhood that is being made, if it is wanted; there must be room. It is written in any case and
+    /// counted conditionally: a branch would be guessed wrong often.
+    #[inline(always)]
+    pub(crate) fn offer(&mut self, id: u32, d: Vec3, other: Vec3, is_wanted: bool) {
+        self.ids[self.len] = id;
+        self.pairs.set(self.len, d, other);
+        self.len += usize::from(is_wanted);
+    }
+
+    /// Ends the neighbourhood of a centre.
+    pub(crate) fn end(&mut self, center: &Center) {
+        let first = self.ends.last().copied().unwrap_or(0);
+        self.ends.push(self.len);
+        self.pairs.set_center(padded(&(first..self.len)), center);
+    }
+
+    /// The members of the neighbourhood of that rank.
+    pub(crate) fn own(&self, rank: usize) -> Range<usize> {
+        let first = if rank == 0 { 0 } else { self.ends[rank - 1] };
+        first..self.ends[rank]
+    }
+
+    /// Calls a function for each block of pairs and the verdicts on them.
+    pub(crate) fn judge(&mut self, judge: impl Fn(Block<'_>, &mut [Verdict; BLOCK])) {
+        let blocks = self.verdicts.as_chunks_mut().0.iter_mut().take(self.len.div_ceil(BLOCK));
+        blocks.enumerate().for_each(|(i, verdicts)| judge(self.pairs.block(i), verdicts));
     }
 
     /// Finds the places of all on the tangent planes. Those exactly along the normal have no direction there: they are out.
     pub(crate) fn project(&mut self, fuzzy: bool) {
-        let Self { x, y, angle, offset, verdicts, .. } = self;
-        // One more than there are: the members of a neighbourhood are read in multiples of `LANES`.
-        let blocks = self.pairs.len() + 1;
-        if x.len() < blocks {
-            let columns = [&mut *x, y, angle].into_iter().chain(offset.iter_mut());
-            columns.for_each(|column| column.resize(blocks, [0.0; BLOCK]));
-            verdicts.resize(blocks, [OUT; BLOCK]);
+        let Self { pairs, x, y, angle, offset, verdicts, .. } = self;
+        let project = if fuzzy { project::<true> } else { project::<false> };
+        let blocks = self.len.div_ceil(BLOCK);
+        for i in 0..blocks {
+            let (x, y) = (&mut x.as_chunks_mut().0[i], &mut y.as_chunks_mut().0[i]);
+            project(pairs.block(i), x, y, &mut verdicts.as_chunks_mut().0[i]);
+            direction_angles(y, x, &mut angle[i * BLOCK..(i + 1) * BLOCK]);
         }
-        for (i, pairs) in self.pairs.iter().enumerate() {
-            if fuzzy {
-                project::<true>(pairs, &mut x[i], &mut y[i], &mut verdicts[i]);
-                for lane in 0..BLOCK {
-                    let d = pairs.d.get(lane) * pairs.inverse_radius[lane];
-                    offset.iter_mut().zip(d.to_array()).for_each(|(o, v)| o[i][lane] = v);
-                }
-            } else {
-                project::<false>(pairs, &mut x[i], &mut y[i], &mut verdicts[i]);
+        if fuzzy {
+            for (offset, d) in offset.iter_mut().zip(&pairs.d) {
+                let scaled = d.iter().zip(&pairs.inverse_radius).map(|(d, inverse)| d * inverse);
+                offset[..blocks * BLOCK].iter_mut().zip(scaled).for_each(|(o, v)| *o = v);
             }
-            direction_angles(&y[i], &x[i], &mut angle[i]);
         }
     }
 
     /// The members of a neighbourhood, after their badness `w_i` (eq. 8) was found.
     pub(crate) fn ball(&mut self, own: Range<usize>, fuzzy: bool, sin_theta_f: f32) -> Ball<'_> {
-        let padded = own.start..own.start + own.len().next_multiple_of(LANES);
-        let [ox, oy, oz] = &self.offset;
-        let (x, y) = (self.x.as_flattened(), self.y.as_flattened());
-        let verdicts = &self.verdicts.as_flattened()[own.clone()];
-        // Less than any square of a sine.
-        for sines in [&mut self.successor, &mut self.predecessor] {
+        let all = padded(&own);
+        let directions = [&self.x[all.clone()], &self.y[all.clone()]];
+        let verdicts = &self.verdicts[own.clone()];
+        let (successor, predecessor) = (&mut self.successor, &mut self.predecessor);
+        for sines in [&mut *successor, predecessor] {
             sines.clear();
-            sines.resize(padded.len(), -2.0);
+            // Less than any square of a sine.
+            sines.resize(all.len(), -2.0);
         }
-        let (successor, predecessor) = (&mut *self.successor, &mut *self.predecessor);
-        let directions = [&x[padded.clone()], &y[padded.clone()]];
         if fuzzy {
-            let offsets = [ox, oy, oz].map(|column| &column.as_flattened()[padded.clone()]);
+            let offsets = self.offset.each_ref().map(|column| &column[all.clone()]);
             worst_sines::<true>(offsets, directions, verdicts, successor, predecessor);
         } else {
             let [x, y] = directions;
@@ -181,15 +240,19 @@ impl Members {
         badness(successor, predecessor, sin_theta_f);
         Ball {
             ids: &self.ids[own.clone()],
-            x: &x[own.clone()],
-            y: &y[own.clone()],
-            angle: &self.angle.as_flattened()[own],
+            x: &self.x[own.clone()],
+            y: &self.y[own.clone()],
+            angle: &self.angle[own.clone()],
             verdicts,
-            badness: &self.successor,
-            pairs: &self.pairs,
-            first: padded.start,
+            badness: &self.successor[..own.len()],
+            d: self.pairs.d.each_ref().map(|column| &column[own.clone()]),
         }
     }
+}
+
+/// A range filled up to a multiple of [`LANES`].
+fn padded(own: &Range<usize>) -> Range<usize> {
+    own.start..own.start + own.len().next_multiple_of(LANES)
 }
 
 impl Ball<'_> {
@@ -199,26 +262,91 @@ impl Ball<'_> {
 
     /// From the centre to a member.
     pub(crate) fn offset(&self, i: usize) -> Vec3 {
-        let i = self.first + i;
-        self.pairs[i / BLOCK].d.get(i % BLOCK)
+        Vec3::from_array(self.d.map(|column| column[i]))
     }
 
     /// Whether a member is a neighbour: whether it is sure, and does not lie behind its successors and predecessors.
+    #[inline(always)]
     pub(crate) fn is_neighbor(&self, i: usize) -> bool {
-        self.verdicts[i] == SURE && self.badness[i] <= WORST_BADNESS
+        (self.verdicts[i] == SURE) & (self.badness[i] <= WORST_BADNESS)
+    }
+
+    /// Appends the neighbours.
+    pub(crate) fn neighbors(&self, around: &mut Around) {
+        around.prepare(self.len());
+        for i in 0..self.len() {
+            around.offer(i as u32, self.angle[i], self.ids[i], self.is_neighbor(i));
+        }
+    }
+}
+
+/// Members in the order of their angles, ties by index.
+#[derive(Default)]
+pub(crate) struct Around {
+    len: usize,
+    /// Which members these are in their ball.
+    members: Vec<u32>,
+    /// Angles are not negative, so their bits order like they do. Those of the index follow them.
+    keys: Vec<u64>,
+    /// How many keys are smaller than each.
+    ranks: Vec<u64>,
+}
+
+impl Around {
+    pub(crate) fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    /// Makes room for so many more.
+    pub(crate) fn prepare(&mut self, count: usize) {
+        let room = (self.len + count + 1).next_multiple_of(LANES);
+        if self.keys.len() < room {
+            self.members.resize(room, 0);
+            self.keys.resize(room, 0);
+            self.ranks.resize(room, 0);
+        }
+    }
+
+    /// Adds a member if it is wanted; there must be room. It is written in any case: a branch would be guessed wrong often.
+    #[inline(always)]
+    pub(crate) fn offer(&mut self, member: u32, angle: f32, id: u32, is_wanted: bool) {
+        self.members[self.len] = member;
+        self.keys[self.len] = u64::from(angle.to_bits()) << 32 | u64::from(id);
+        self.len += usize::from(is_wanted);
+    }
+
+    /// The members, in any order.
+    pub(crate) fn members(&self) -> &[u32] {
+        &self.members[..self.len]
+    }
+
+    /// The members, each with its rank among all. To count what comes before each takes as many comparisons as there are pairs,
+    /// but they are made in vector registers, and none has to be guessed.
+    pub(crate) fn sorted(&mut self) -> impl ExactSizeIterator<Item = (usize, usize)> {
+        find_ranks(&self.keys[..self.len.next_multiple_of(LANES)], self.len, &mut self.ranks);
+        let members = &self.members[..self.len];
+        members.iter().zip(&self.ranks).map(|(&member, &rank)| (member as usize, rank as usize))
     }
 }
 
 vectorized! {
+    fn along(d: [&[f32]; 3], axis: Vec3, places: &mut [f32]) {
+        let count = places.len();
+        let [x, y, z] = d.map(|column| &column[..count]);
+        for i in 0..count {
+            places[i] = Vec3::new(x[i], y[i], z[i]).dot(axis);
+        }
+    }
+
     fn project[const FUZZY: bool] [FUZZY](
-        pairs: &Pairs,
+        pairs: Block<'_>,
         xs: &mut Column,
         ys: &mut Column,
         verdicts: &mut [Verdict; BLOCK],
     ) {
         for i in 0..BLOCK {
             let (d, normal, other) = pairs.get(i);
-            let (x, y) = (pairs.x[i], pairs.y[i]);
+            let [x, y] = pairs.plane.map(|column| column[i]);
             let q2 = x * x + y * y;
             verdicts[i] = if q2 <= 1e-12 * d.dot(d) { OUT } else { SURE };
             let scale = if FUZZY {
@@ -242,21 +370,23 @@ vectorized! {
         let ([ox, oy, oz], [x, y]) = (offsets, directions);
         let count = x.len();
         let (ox, oy, oz) = (&ox[..count], &oy[..count], if SPATIAL { &oz[..count] } else { oz });
+        let dot = |a: Vec3, b: Vec3| if SPATIAL { a.dot(b) } else { a.x * b.x + a.y * b.y };
         let at = |i: usize| Vec3::new(ox[i], oy[i], if SPATIAL { oz[i] } else { 0.0 });
         let (y, successor, predecessor) =
             (&y[..count], &mut successor[..count], &mut predecessor[..count]);
         for j in (0..verdicts.len()).filter(|&j| verdicts[j] == SURE) {
             let (other, xj, yj) = (at(j), x[j], y[j]);
-            let length = other.dot(other);
+            let length = dot(other, other);
             for i in 0..count {
                 let c = at(i) - other;
-                let product = length * c.dot(c);
-                let along = other.dot(c);
+                let product = length * dot(c, c);
+                let along = dot(other, c);
+                let sine = along * along.abs() / product;
                 // The member itself, and others in its place, count for nothing.
-                let sine = if product == 0.0 { -2.0 } else { along * along.abs() / product };
+                let sine = unless(product == 0.0, sine);
                 // An exactly collinear point counts as successor.
                 let succeeds = x[i] * yj - y[i] * xj >= 0.0;
-                let (after, before) = if succeeds { (sine, -2.0) } else { (-2.0, sine) };
+                let (after, before) = (unless(!succeeds, sine), unless(succeeds, sine));
                 successor[i] = if after > successor[i] { after } else { successor[i] };
                 predecessor[i] = if before > predecessor[i] { before } else { predecessor[i] };
             }
@@ -269,6 +399,26 @@ vectorized! {
             *after = plane_badness(*after, sin_theta_f) + plane_badness(before, sin_theta_f);
         }
     }
+
+    /// How many of the first `count` keys are smaller than each.
+    fn find_ranks(keys: &[u64], count: usize, ranks: &mut [u64]) {
+        let blocks = keys.as_chunks::<LANES>().0.iter().zip(ranks.as_chunks_mut::<LANES>().0);
+        for (own, ranks) in blocks {
+            let mut smaller = [0; LANES];
+            for &key in &keys[..count] {
+                for lane in 0..LANES {
+                    smaller[lane] += u64::from(key < own[lane]);
+                }
+            }
+            *ranks = smaller;
+        }
+    }
+}
+
+/// A number, or none at all, which is larger than none: NaN. It costs less than a choice between numbers.
+#[inline(always)]
+fn unless(condition: bool, number: f32) -> f32 {
+    f32::from_bits(number.to_bits() | u32::from(condition).wrapping_neg())
 }
 
 /// `w_ij` from the signed square of `sin α_ij`; 0 for an empty set, which passes -2.
@@ -314,18 +464,37 @@ mod tests {
         let mut members = Members::default();
         for count in [0, 1, 5, 8, 9, 40] {
             let begin = members.len();
+            members.prepare(count as usize);
             for i in 0..count {
                 let d = Vec3::new(coordinate(), coordinate(), 0.1 * coordinate());
                 let normal = Vec3::new(coordinate(), coordinate(), 3.0).normalize();
-                members.push(i, &center, d, normal);
+                members.offer(i, d, normal, true);
             }
+            members.end(&center);
             members.project(false);
             let doubtful = begin..begin + count as usize / 5;
-            doubtful.for_each(|i| members.verdicts[i / BLOCK][i % BLOCK] = DOUBT);
+            doubtful.for_each(|i| members.verdicts[i] = DOUBT);
             let ball = members.ball(begin..begin + count as usize, false, 0.5);
             for i in 0..ball.len() {
                 let plain = plain_badness(ball.x, ball.y, ball.verdicts, i, 0.5);
                 assert_eq!(ball.badness[i].to_bits(), plain.to_bits(), "{i} of {count}");
+            }
+        }
+    }
+
+    #[test]
+    fn members_are_ranked_by_angle_then_index() {
+        for count in [0u32, 1, 7, 8, 9, 30] {
+            let (mut around, mut expected) = (Around::default(), Vec::new());
+            around.prepare(count as usize);
+            for i in 0..count {
+                let (angle, id) = ((i * 7 % 5) as f32, i * 11 % 31);
+                around.offer(i, angle, id, i % 4 != 3);
+                expected.extend((i % 4 != 3).then_some((angle.to_bits(), id, i as usize)));
+            }
+            expected.sort_unstable();
+            for (member, rank) in around.sorted() {
+                assert_eq!(expected[rank].2, member, "of {count}");
             }
         }
     }

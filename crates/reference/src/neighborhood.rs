@@ -1,9 +1,9 @@
 //! One-ring neighbourhoods (section 4). Twin: `shaders/neighborhood.wgsl`.
 
 use crate::Level;
-use crate::ball::{Ball, Center, DOUBT, Members, OUT, Pairs, SURE, Verdict};
+use crate::ball::{Around, Ball, Block, Center, DOUBT, Members, OUT, SURE, Verdict};
 use crate::columns::{BLOCK, vectorized};
-use crate::lists::{Lists, insertion_sort};
+use crate::lists::Lists;
 use crate::math::{TAU, direction_angle, is_apart};
 use crate::nearby::{Marks, Nearby};
 use crate::visible::View;
@@ -20,6 +20,9 @@ pub const NARROW: f32 = 0.7;
 pub const DOUBTFUL: f32 = 0.5;
 /// A ring gap from 100° on may miss a natural neighbour, radians.
 pub const OPEN_GAP: f32 = 1.745_329_3;
+
+/// By less do the angles between members, and the differences of their angles, differ.
+const ROUNDINGS: f32 = 1e-4;
 
 /// A corner of a triangle fan.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -75,12 +78,9 @@ pub fn neighborhood(level: &Level, grid: &Grid, params: &RefineParams) -> Rings 
             let batch = first..(first + BATCH).min(points.end);
             size += find_balls(level, grid, batch.clone(), scratch);
             scratch.members.project(filter.fuzzy);
-            scratch.judge(params.rules);
-            let mut begin = 0;
+            scratch.members.judge(|pairs, verdicts| judge(pairs, params.rules, verdicts));
             for (rank, p) in batch.enumerate() {
-                let end = scratch.ends[rank];
-                one_ring(level, p, begin..end, scratch, &filter);
-                begin = end;
+                one_ring(level, p, scratch.members.own(rank), scratch, &filter);
                 rings.items.extend(&scratch.ring);
                 rings.end();
             }
@@ -114,47 +114,36 @@ struct Scratch {
     marks: Marks,
     /// `N^E` of each point of the batch, one after the other.
     members: Members,
-    /// Where the members of each point end.
-    ends: Vec<usize>,
-    kept: Vec<bool>,
+    kept: Around,
     back: Vec<usize>,
     ring: Vec<RingEntry>,
 }
 
 /// Finds `N^E` (eq. 7) of each point of a batch, and returns the sum of their sizes.
 fn find_balls(level: &Level, grid: &Grid, batch: Range<usize>, scratch: &mut Scratch) -> u64 {
-    let Scratch { nearby, marks, members, ends, .. } = scratch;
+    let Scratch { nearby, marks, members, .. } = scratch;
     members.clear();
-    ends.clear();
     let end = batch.end;
     for p in batch {
         let center = Center::of(level, p);
         let Center { position, radius, .. } = center;
         nearby.look(grid, p..end, |p| (level.positions[p], level.radii[p]));
-        for &i in nearby.in_ball(position, radius, marks) {
+        let found = nearby.in_ball(position, radius, marks);
+        members.prepare(found.len());
+        for &i in found {
             let (item, offset) = (nearby.items[i as usize], nearby.place(i) - position);
             // Coincident points have no direction to each other, nor has a point to itself: they are no neighbours.
-            if is_apart(offset.dot(offset), radius) {
-                members.push(item, &center, offset, level.normals[item as usize]);
-            }
+            let is_wanted = is_apart(offset.dot(offset), radius);
+            members.offer(item, offset, level.normals[item as usize], is_wanted);
         }
-        ends.push(members.len());
+        members.end(&center);
     }
     members.len() as u64
 }
 
-impl Scratch {
-    /// Applies eq. 6 to all members.
-    fn judge(&mut self, rules: Rules) {
-        let Members { pairs, verdicts, .. } = &mut self.members;
-        for (pairs, verdicts) in pairs.iter().zip(verdicts) {
-            judge(pairs, rules, verdicts);
-        }
-    }
-}
-
 vectorized! {
-    fn judge(pairs: &Pairs, rules: Rules, verdicts: &mut [Verdict; BLOCK]) {
+    /// Applies eq. 6.
+    fn judge(pairs: Block<'_>, rules: Rules, verdicts: &mut [Verdict; BLOCK]) {
         for (i, verdict) in verdicts.iter_mut().enumerate() {
             let (d, normal, other) = pairs.get(i);
             let u = d * (1.0 / d.dot(d).sqrt());
@@ -191,7 +180,7 @@ fn one_ring(level: &Level, p: usize, own: Range<usize>, scratch: &mut Scratch, f
     let Scratch { members, kept, back, ring, .. } = scratch;
     if let Some(view) = View::new(level, p, level.radii[p], filter.rules) {
         for i in own.clone() {
-            let verdict = &mut members.verdicts[i / BLOCK][i % BLOCK];
+            let verdict = &mut members.verdicts[i];
             if *verdict != OUT && !view.sees(level.seen(members.ids[i] as usize)) {
                 *verdict = OUT;
             }
@@ -199,42 +188,57 @@ fn one_ring(level: &Level, p: usize, own: Range<usize>, scratch: &mut Scratch, f
     }
     let ball = members.ball(own, filter.fuzzy, filter.sin_theta_f);
     kept.clear();
-    kept.extend((0..ball.len()).map(|i| ball.is_neighbor(i)));
+    ball.neighbors(kept);
     sort_ring(ball, kept, ring);
     if filter.rules.natural_neighbors && has_open_gap(ring) {
         let comes_back = |i: &usize| {
-            let may = ball.verdicts[*i] != OUT && !kept[*i];
-            may && is_in_open_gap(ball, kept, *i) && is_natural(ball, *i)
+            let may = ball.verdicts[*i] != OUT && !ball.is_neighbor(*i);
+            may && may_be_in_open_gap(ball, kept.members(), *i)
+                && is_in_open_gap(ball, kept.members(), *i)
+                && is_natural(ball, *i)
         };
         back.clear();
         back.extend((0..ball.len()).filter(comes_back));
-        back.iter().for_each(|&i| kept[i] = true);
+        kept.prepare(back.len());
+        back.iter().for_each(|&i| kept.offer(i as u32, ball.angle[i], ball.ids[i], true));
         sort_ring(ball, kept, ring);
     }
 }
 
 /// The kept members by angle, ties by index.
-fn sort_ring(ball: Ball<'_>, kept: &[bool], ring: &mut Vec<RingEntry>) {
-    ring.clear();
-    for (i, _) in kept.iter().enumerate().filter(|(_, kept)| **kept) {
-        ring.push(RingEntry { id: ball.ids[i], angle: ball.angle[i] });
+fn sort_ring(ball: Ball<'_>, kept: &mut Around, ring: &mut Vec<RingEntry>) {
+    let sorted = kept.sorted();
+    ring.resize(sorted.len(), RingEntry::default());
+    for (i, rank) in sorted {
+        ring[rank] = RingEntry { id: ball.ids[i], angle: ball.angle[i] };
     }
-    insertion_sort(ring, |a, b| a.angle < b.angle || (a.angle == b.angle && a.id < b.id));
 }
 
 /// Whether two entries that follow each other may leave an open gap: whether anything may come back.
 fn has_open_gap(ring: &[RingEntry]) -> bool {
-    // Angles between members and angles of members differ by some roundings.
-    let open = OPEN_GAP - 1e-4;
+    let open = OPEN_GAP - ROUNDINGS;
     let angle = |i: usize| ring[i].angle;
     let wraps = ring.is_empty() || angle(0) + TAU - angle(ring.len() - 1) >= open;
     wraps || (1..ring.len()).any(|i| angle(i) - angle(i - 1) >= open)
 }
 
-/// Whether the kept members next to member `i` on both sides leave a gap that may miss a neighbour.
-fn is_in_open_gap(ball: Ball<'_>, kept: &[bool], i: usize) -> bool {
+/// Whether [`is_in_open_gap`] has to be asked: most members are far from open gaps, which their angles tell at less cost.
+fn may_be_in_open_gap(ball: Ball<'_>, kept: &[u32], i: usize) -> bool {
     let (mut after, mut before) = (TAU, TAU);
-    for j in (0..ball.len()).filter(|&j| kept[j]) {
+    for &j in kept {
+        let turn = ball.angle[j as usize] - ball.angle[i];
+        let turn = if turn < 0.0 { turn + TAU } else { turn };
+        after = after.min(turn);
+        before = before.min(TAU - turn);
+    }
+    // Where one is at the member's own angle, roundings decide on which side it is.
+    after.min(before) < ROUNDINGS || after + before >= OPEN_GAP - ROUNDINGS
+}
+
+/// Whether the kept members next to member `i` on both sides leave a gap that may miss a neighbour.
+fn is_in_open_gap(ball: Ball<'_>, kept: &[u32], i: usize) -> bool {
+    let (mut after, mut before) = (TAU, TAU);
+    for j in kept.iter().map(|&j| j as usize) {
         let along = ball.x[i] * ball.x[j] + ball.y[i] * ball.y[j];
         let across = ball.x[i] * ball.y[j] - ball.y[i] * ball.x[j];
         after = after.min(direction_angle(across, along));

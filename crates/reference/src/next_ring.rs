@@ -5,9 +5,8 @@
 //! old ring and the new points nearby go through the filter of section 4, and what is left must be within the radii, of
 //! the point and of the members alike.
 
-use crate::ball::{Center, Members};
+use crate::ball::{Around, Center, Members};
 use crate::insertion::{COVER, Insertion, Stage, raise};
-use crate::lists::{choose, insertion_sort};
 use crate::math::{PI, TAU, is_apart};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -50,15 +49,12 @@ pub fn next_ring(stage: Stage<'_>, insertion: &Insertion) -> Covers {
 struct Scratch {
     /// What may be on the next rings of a batch: old points by index, then candidates.
     members: Members,
-    /// Where the members of each point end.
-    ends: Vec<usize>,
-    /// New points within the new radius of a point.
-    near: Vec<u32>,
+    kept: Around,
     ring: Vec<Member>,
 }
 
 /// A member of the next ring.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Member {
     id: u32,
     offset: Vec3,
@@ -79,17 +75,13 @@ fn cover_rings(
     let (fuzzy, sin_theta_f) =
         (params.effective_neighborhood() == Neighborhood::Fuzzy, params.sin_theta_f());
     scratch.members.clear();
-    scratch.ends.clear();
     for p in batch.clone() {
         gather(stage, insertion, p, scratch);
-        scratch.ends.push(scratch.members.len());
     }
     scratch.members.project(fuzzy);
-    let mut begin = 0;
-    for (p, &end) in batch.zip(&scratch.ends) {
-        keep_ring(&mut scratch.members, begin..end, fuzzy, sin_theta_f, &mut scratch.ring);
+    for (rank, p) in batch.enumerate() {
+        keep_ring(scratch, rank, fuzzy, sin_theta_f);
         cover_ring(&mut scratch.ring, level.record(p).is_some(), p, covers);
-        begin = end;
     }
 }
 
@@ -98,42 +90,37 @@ fn gather(stage: Stage<'_>, insertion: &Insertion, p: usize, scratch: &mut Scrat
     let Stage { level, rings, candidates, conflicts, .. } = stage;
     let center = Center::of(level, p);
     let members = &mut scratch.members;
-    let mut add = |id: u32, d: Vec3, other: Vec3| {
-        if is_apart(d.dot(d), center.radius) {
-            members.push(id, &center, d, other);
-        }
+    let (ring, around) = (rings.ring(p), conflicts.around.of(p));
+    members.prepare(ring.len() + around.len());
+    let mut add = |id: u32, d: Vec3, other: Vec3, is_wanted: bool| {
+        members.offer(id, d, other, is_wanted & is_apart(d.dot(d), center.radius));
     };
-    for entry in rings.ring(p) {
+    for entry in ring {
         let i = entry.id as usize;
-        add(entry.id, level.positions[i] - center.position, level.normals[i]);
+        add(entry.id, level.positions[i] - center.position, level.normals[i], true);
     }
     let limit = insertion.radii[p] * insertion.radii[p];
-    let is_near = |c: u32| {
-        let d = candidates.positions[c as usize] - center.position;
-        insertion.is_inserted(c as usize) & (d.dot(d) <= limit)
-    };
-    for &c in choose(conflicts.around.of(p), is_near, &mut scratch.near) {
+    for &c in around {
         let i = c as usize;
         let d = candidates.positions[i] - center.position;
-        add(level.len() as u32 + c, d, candidates.normals[i]);
+        let is_near = insertion.is_inserted(i) & (d.dot(d) <= limit);
+        add(level.len() as u32 + c, d, candidates.normals[i], is_near);
     }
+    members.end(&center);
 }
 
 /// Removes the members that lie behind others (section 4) and sorts the rest around the centre.
-fn keep_ring(
-    members: &mut Members,
-    own: Range<usize>,
-    fuzzy: bool,
-    sin_theta_f: f32,
-    ring: &mut Vec<Member>,
-) {
-    ring.clear();
-    let ball = members.ball(own, fuzzy, sin_theta_f);
-    for i in (0..ball.len()).filter(|&i| ball.is_neighbor(i)) {
+fn keep_ring(scratch: &mut Scratch, rank: usize, fuzzy: bool, sin_theta_f: f32) {
+    let Scratch { members, kept, ring, .. } = scratch;
+    let ball = members.ball(members.own(rank), fuzzy, sin_theta_f);
+    kept.clear();
+    ball.neighbors(kept);
+    let sorted = kept.sorted();
+    ring.resize(sorted.len(), Member::default());
+    for (i, rank) in sorted {
         let (id, offset) = (ball.ids[i], ball.offset(i));
-        ring.push(Member { id, offset, angle: ball.angle[i], squared: offset.dot(offset) });
+        ring[rank] = Member { id, offset, angle: ball.angle[i], squared: offset.dot(offset) };
     }
-    insertion_sort(ring, |a, b| a.angle < b.angle || (a.angle == b.angle && a.id < b.id));
 }
 
 /// The point covers the members, they cover it and, over gaps below π, each other. `on_curve` says that the sheet ends at
