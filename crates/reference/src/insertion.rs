@@ -11,6 +11,7 @@ use crate::coloring::Classes;
 use crate::conflicts::Conflicts;
 use crate::fan::{Fan, Sample};
 use crate::neighborhood::Rings;
+use crate::pool::Pool;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use surfine_points::RefineParams;
@@ -104,6 +105,8 @@ pub fn insertion(stage: Stage<'_>, classes: &Classes, order: Order) -> Insertion
         candidate_radii: candidates.map(|(_, radius)| AtomicU32::new(radius.to_bits())).collect(),
         radii: (0..stage.level.len()).map(|_| AtomicU32::new(0)).collect(),
     };
+    // A batch has many small vectors, and each class is shared out anew.
+    let batches = Pool::<Batch>::default();
     for (class, members) in (1..).zip(&classes.members) {
         // One after the other, the points of a class see what those before them inserted.
         let limit = if order == Order::Together { class } else { class + 1 };
@@ -112,7 +115,8 @@ pub fn insertion(stage: Stage<'_>, classes: &Classes, order: Order) -> Insertion
         };
         match order {
             Order::Together => {
-                members.par_chunks(BATCH).for_each_init(Batch::default, refine);
+                let batch = || batches.lend();
+                members.par_chunks(BATCH).for_each_init(batch, |batch, p| refine(batch, p));
             }
             Order::Ascending => {
                 members.chunks(1).for_each(|p| refine(&mut Batch::default(), p));

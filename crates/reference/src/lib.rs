@@ -19,6 +19,7 @@ mod nearby;
 pub mod neighborhood;
 pub mod next_ring;
 pub mod pn_triangle;
+mod pool;
 mod refine;
 mod triangles;
 pub mod visible;
