@@ -435,7 +435,7 @@ fn constant(file: &str, name: &str) -> u32 {
 #[test]
 fn constants_are_those_of_the_reference() {
     use surfine::curves::{HEADER_WORDS, RECORD_WORDS, SEGMENT_WORDS};
-    use surfine_reference::{candidates, insertion, pn_triangle, visible};
+    use surfine_reference::{candidates, insertion, neighborhood, pn_triangle, visible};
     let cases = [
         ("next_radii", "COVER", insertion::COVER.to_bits()),
         ("new_ring", "HYSTERESIS", insertion::HYSTERESIS.to_bits()),
@@ -454,7 +454,14 @@ fn constants_are_those_of_the_reference() {
         ("curves", "RECORD_WORDS", RECORD_WORDS as u32),
         ("curves", "SEGMENT_WORDS", SEGMENT_WORDS as u32),
         ("records", "LEVEL_BITS", records::LEVEL_BITS),
+        ("ball", "OPPOSITE", neighborhood::OPPOSITE.to_bits()),
+        ("ball", "NARROW", neighborhood::NARROW.to_bits()),
+        ("ball", "DOUBTFUL_SHARE", neighborhood::DOUBTFUL.to_bits()),
+        ("natural", "OPEN_GAP", neighborhood::OPEN_GAP.to_bits()),
         ("pn_triangle", "FLAT", pn_triangle::FLAT.to_bits()),
+        ("new_normal", "STEEP", pn_triangle::STEEP.to_bits()),
+        ("new_normal", "STEP", pn_triangle::STEP.to_bits()),
+        ("new_normal", "STEP_BLEND", pn_triangle::STEP_BLEND.to_bits()),
         ("math", "TAU", surfine_reference::math::TAU.to_bits()),
         ("math", "PI", surfine_reference::math::PI.to_bits()),
         ("records", "NONE", surfine_reference::NO_POINT),
