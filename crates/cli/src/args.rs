@@ -113,12 +113,8 @@ pub(crate) struct RefineArgs {
     /// GPU adapter whose name or driver contains NAME, in any case; implies --backend gpu
     #[arg(long, value_name = "NAME")]
     pub(crate) adapter: Option<String>,
-    /// Which points are neighbors
-    #[arg(long, value_enum, value_name = "KIND", default_value_t)]
-    neighborhood: NeighborhoodChoice,
-    /// Take the paper's four simplifications, and no look ahead to the next step: faster, for dense smooth clouds; implies fuzzy
-    #[arg(long)]
-    simplified: bool,
+    #[command(flatten)]
+    variant: VariantArgs,
     /// Measure the angle between new neighbors straight instead of along the curved surface: a little faster
     #[arg(long)]
     plain_angle: bool,
@@ -230,6 +226,17 @@ pub(crate) enum BackendChoice {
     Cpu,
 }
 
+/// The variants of the paper.
+#[derive(Args, Debug)]
+struct VariantArgs {
+    /// Which points are neighbors
+    #[arg(long, value_enum, value_name = "KIND", default_value_t)]
+    neighborhood: NeighborhoodChoice,
+    /// Take the paper's four simplifications, and no look ahead to the next step: faster, for dense smooth clouds; implies fuzzy
+    #[arg(long)]
+    simplified: bool,
+}
+
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 enum NeighborhoodChoice {
     /// For any sampling
@@ -301,12 +308,12 @@ impl RefineArgs {
             Some(name) => Boundary::Marked(name.clone()),
             None => Boundary::Angle(self.boundary_angle),
         };
-        let &Self { levels, simplified, plain_angle, .. } = self;
+        let &Self { levels, plain_angle, .. } = self;
         let &Self { theta_f, theta_c, lambda1, lambda2, .. } = self;
         RefineParams {
             levels,
-            neighborhood: self.neighborhood.into(),
-            simplified,
+            neighborhood: self.variant.neighborhood.into(),
+            simplified: self.variant.simplified,
             plain_angle,
             theta_f,
             theta_c,

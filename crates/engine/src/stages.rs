@@ -16,7 +16,7 @@ use std::ops::Range;
 use surfine_features::Gap;
 use surfine_points::{Neighborhood, RefineParams};
 
-/// Ranges of priorities: as many rounds of colouring have points that were not there before.
+/// Ranges of priorities, as in `shaders/shared/priority.wgsl`: as many rounds of colouring have points that were not there before.
 const RANGES: u32 = 32;
 /// Rounds after these, or between two looks at what is left.
 const ROUNDS: u32 = 8;

@@ -5,7 +5,7 @@ use crate::angles::{Angles, Directions};
 use crate::ball::Center;
 use crate::candidates::Candidates;
 use crate::insertion::{COVER, HYSTERESIS, LESS, SMALLEST_SPLIT, Shared, Stage, raise};
-use crate::lists::{choose, insertion_sort};
+use crate::lists::{choose, insertion_sort, offer};
 use crate::math::{PI, TAU, is_apart, unit};
 use crate::pn_triangle::Corner;
 use crate::visible::same_side;
@@ -117,9 +117,7 @@ impl Fan {
             let own = self.center.member(c as u32, &samples[c]);
             let d2 = own.offset.dot(own.offset);
             let is_new = is_there(own.id) & (d2 < near * near) & is_apart(d2, radius);
-            let len = self.own.len() + usize::from(!is_new);
-            self.own.push(own);
-            self.own.truncate(len);
+            offer(&mut self.own, own, !is_new);
         }
         self.pending.clear();
         self.pending.resize(self.own.len(), true);

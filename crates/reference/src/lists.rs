@@ -87,13 +87,10 @@ impl<T: Copy> Chunk<T> {
         Self { ends: Vec::with_capacity(CHUNK), items: Vec::with_capacity(entries) }
     }
 
-    /// Appends an entry to the list of a point if it is wanted. It is written in any case: where about half of the entries are
-    /// wanted, a branch would be guessed wrong often.
+    /// Appends an entry to the list of a point if it is wanted.
     #[inline(always)]
     pub(crate) fn offer(&mut self, entry: T, is_wanted: bool) {
-        let len = self.items.len() + usize::from(is_wanted);
-        self.items.push(entry);
-        self.items.truncate(len);
+        offer(&mut self.items, entry, is_wanted);
     }
 
     /// Ends the list of a point.
@@ -122,6 +119,15 @@ impl<T> Lists<T> {
     pub fn of(&self, p: usize) -> &[T] {
         &self.items[self.range(p)]
     }
+}
+
+/// Appends an entry if it is wanted. It is written in any case: where about half of the entries are wanted, a branch would be
+/// guessed wrong often.
+#[inline(always)]
+pub(crate) fn offer<T: Copy>(list: &mut Vec<T>, entry: T, is_wanted: bool) {
+    let len = list.len() + usize::from(is_wanted);
+    list.push(entry);
+    list.truncate(len);
 }
 
 /// The entries that fit, in a buffer that keeps its memory. It writes all and counts those that fit: where about half of them do, a

@@ -1,6 +1,6 @@
 //! The arguments of `surfine bench`.
 
-use super::NeighborhoodChoice;
+use super::VariantArgs;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -52,12 +52,8 @@ pub(crate) struct BenchArgs {
     /// Also refine on the GPU in slices of MS milliseconds, 0.1 to 1000, and tell what these take
     #[arg(long, value_name = "MS", value_parser = budget)]
     pub(crate) slice: Option<Duration>,
-    /// Which points are neighbors
-    #[arg(long, value_enum, value_name = "KIND", default_value_t)]
-    neighborhood: NeighborhoodChoice,
-    /// Take the paper's four simplifications: faster, for dense smooth clouds; implies fuzzy
-    #[arg(long)]
-    simplified: bool,
+    #[command(flatten)]
+    variant: VariantArgs,
     /// Keep to the text of the paper: without any rule beyond it
     #[arg(long)]
     literal: bool,
@@ -111,8 +107,8 @@ impl BenchArgs {
         let usual = RefineParams::default();
         RefineParams {
             levels: self.levels,
-            neighborhood: self.neighborhood.into(),
-            simplified: self.simplified,
+            neighborhood: self.variant.neighborhood.into(),
+            simplified: self.variant.simplified,
             boundary: if self.closed { Boundary::None } else { usual.boundary },
             rules: if self.literal { Rules::LITERAL } else { Rules::ALL },
             ..usual

@@ -1,7 +1,7 @@
 //! What was measured, as JSON; `table.rs` shows it to people.
 
 use super::clouds::Cloud;
-use super::measure::{Measured, Run, median};
+use super::measure::{Measured, Run, median, ms};
 use super::slices::Sliced;
 use crate::adapters::Description;
 use crate::report::{Params, in_order, per_second};
@@ -140,7 +140,7 @@ fn new_points(measured: &Measured) -> usize {
 impl Side {
     fn new(measured: &Measured, cpu_speed: Option<f64>) -> Self {
         let Run { time, stages } = median(&measured.runs);
-        let stages_ms: Vec<_> = stages.iter().map(|(s, t)| (*s, 1e3 * t.as_secs_f64())).collect();
+        let stages_ms: Vec<_> = stages.iter().map(|(s, t)| (*s, ms(*t))).collect();
         let inside: f64 = stages_ms.iter().map(|(_, ms)| ms).sum();
         let points = measured.refined.points.len().max(1) as f64;
         let device_bytes = measured.refined.device_bytes;
@@ -148,7 +148,7 @@ impl Side {
             pace: Pace::new(&measured.runs, new_points(measured), cpu_speed),
             device_bytes,
             bytes_per_point: device_bytes.map(|bytes| bytes as f64 / points),
-            outside_ms: (1e3 * time.as_secs_f64() - inside).max(0.0),
+            outside_ms: (ms(*time) - inside).max(0.0),
             stages_ms,
         }
     }
