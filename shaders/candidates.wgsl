@@ -2,12 +2,17 @@
 // One invocation per candidate. Those of triangles come first, then the new points on creases and boundaries.
 
 @group(0) @binding(2) var<storage, read> points: array<Point>;
-@group(0) @binding(3) var<storage, read_write> all: array<Candidate>;
-@group(0) @binding(4) var<storage, read_write> counters: Counters;
-@group(0) @binding(5) var<storage, read> curves: array<u32>;
+@group(0) @binding(3) var<storage, read> fans: array<Fan>;
+@group(0) @binding(4) var<storage, read_write> all: array<Candidate>;
+@group(0) @binding(5) var<storage, read_write> counters: Counters;
+@group(0) @binding(6) var<storage, read> curves: array<u32>;
 
 /// Whether the simplifications of section 7 are made.
 override simplified: bool = false;
+/// A rule beyond the paper: see `Rules` in crates/points/src/params.rs.
+override largest_first: bool = true;
+
+const THIRD: f32 = 1.0 / 3.0;
 
 @compute @workgroup_size(64)
 fn candidates(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -24,6 +29,7 @@ fn candidates(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgro
     if !add_candidate(c) {
         all[c].place = vec4(0.0, 0.0, 0.0, -1.0);
         all[c].normal = vec3(0.0);
+        all[c].size = 0.0;
     }
 }
 
@@ -43,6 +49,7 @@ fn add_curve_point(c: u32) {
     all[c].place = vec4(record_position(record), record_rho(record));
     all[c].normal = record_normal(record);
     all[c].state = ON_CURVE;
+    all[c].size = record_rho(record);
 }
 
 /// Writes the candidate of a triangle; false if there is none.
@@ -74,8 +81,18 @@ fn add_candidate(c: u32) -> bool {
     }
     all[c].place = vec4(position, rho);
     all[c].normal = normal;
+    all[c].size = size_of(all[c].corners, rho);
     note_rho(rho);
     return true;
+}
+
+/// The size of a triangle. Where neighbours are unevenly far, it counts as large as the neighbourhoods of its corners.
+fn size_of(corners: vec3<u32>, rho: f32) -> f32 {
+    if !largest_first {
+        return rho;
+    }
+    let near = fans[corners.x].near + fans[corners.y].near + fans[corners.z].near;
+    return max(rho, near * THIRD);
 }
 
 fn curve_word(at: u32) -> u32 {

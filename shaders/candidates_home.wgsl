@@ -11,8 +11,9 @@
 @group(0) @binding(6) var<storage, read_write> first_candidates: array<u32>;
 @group(0) @binding(7) var<storage, read> curves: array<u32>;
 
-/// A rule beyond the paper: see `Rules` in crates/points/src/params.rs.
+/// Rules beyond the paper: see `Rules` in crates/points/src/params.rs.
 override first_radii: bool = true;
+override largest_first: bool = true;
 
 /// Radii exceed the distance to the farthest natural neighbour by this factor.
 const NATURAL: f32 = 1.25;
@@ -67,16 +68,20 @@ fn slot_of(p: u32, begin: u32, end: u32) -> u32 {
 }
 
 /// λ1 r. The radii of the input may be too large, and would take far points for new neighbours: in the first step they
-/// count as no more than NATURAL times the distance to the farthest neighbour.
+/// count as no more than NATURAL times the distance to the farthest neighbour. A selection among all candidates has no use for
+/// radii, and asks for that distance.
 fn near_radius(p: u32, block: vec2<u32>) -> f32 {
     let radius = points[p].radius;
-    if !first_radii || params.level > 1u || block.y == 0u {
+    if !largest_first && (!first_radii || params.level > 1u || block.y == 0u) {
         return params.lambda1 * radius;
     }
     var farthest = 0.0;
     for (var slot = block.x; slot < block.x + block.y; slot++) {
         let d = points[ring_entries[slot].x].position - points[p].position;
         farthest = max(farthest, dot3(d, d));
+    }
+    if largest_first {
+        return params.lambda1 * sqrt(farthest);
     }
     return params.lambda1 * min(radius, NATURAL * sqrt(farthest));
 }

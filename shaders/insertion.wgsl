@@ -26,6 +26,7 @@ struct SharedCandidate {
     normal: vec3<f32>,
     state: atomic<u32>,
     corners: vec3<u32>,
+    size: f32,
 }
 
 // Rows of N': candidates, and after the last one the points of the level that only bound gaps; angle on the tangent plane; place

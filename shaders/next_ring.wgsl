@@ -19,16 +19,18 @@
 /// The accurate neighbourhood N^g, or else the fuzzy one N^f.
 override accurate: bool = true;
 
+/// Whether the lists hold N' alone, by the selection.
+override largest_first: bool = true;
+
 // Rows: old points by index, then candidates; a member's angle; its place on the tangent plane; the vector whose fuzzy plane is
-// tested; its place relative to the centre; the members of the ring in order.
+// tested; the members of the ring in order.
 const ID: u32 = 0u;
 const ANGLE: u32 = 1u;
 const X: u32 = 2u;
 const Y: u32 = 3u;
 const OFFSET: u32 = 4u;
-const PLACE: u32 = 7u;
-const ORDER: u32 = 10u;
-const ROWS: u32 = 11u;
+const ORDER: u32 = 7u;
+const ROWS: u32 = 8u;
 /// As conflicts.wgsl counts on.
 const CAPACITY: u32 = 48u;
 
@@ -82,8 +84,15 @@ fn gather(p: u32) -> u32 {
         let q = ring_entries[slot].x;
         add(&all, q, points[q].position - all.center, points[q].normal);
     }
-    let radius = bitcast<f32>(atomicLoad(&next_radii[p]));
     let list = fans[p].around;
+    if largest_first {
+        for (var i = list.x; i < list.x + list.y; i++) {
+            let c = around[i];
+            add(&all, params.points + c, candidates[c].place.xyz - all.center, candidates[c].normal);
+        }
+        return all.size;
+    }
+    let radius = bitcast<f32>(atomicLoad(&next_radii[p]));
     // First the new points are listed, then projected: loops over few are cheaper than branches.
     var size = 0u;
     for (var i = list.x; i < list.x + list.y; i++) {
@@ -114,11 +123,19 @@ fn add(all: ptr<function, Around>, id: u32, d: vec3<f32>, normal: vec3<f32>) {
     set_word(ID, i, id);
     set_number(X, i, x * scale);
     set_number(Y, i, y * scale);
-    set_vector(PLACE, i, d);
     if !accurate {
         set_vector(OFFSET, i, d * inverse);
     }
     (*all).size += u32(is_apart(d2, (*all).radius) & q2 > 1e-12 * d2);
+}
+
+/// The place of a member.
+fn place_of(member: u32) -> vec3<f32> {
+    let id = word(ID, member);
+    if id < params.points {
+        return points[id].position;
+    }
+    return candidates[id - params.points].place.xyz;
 }
 
 fn curve_word(at: u32) -> u32 {

@@ -12,7 +12,7 @@ use std::mem::offset_of;
 use std::path::{Path, PathBuf};
 use surfine::shaders::{SHADERS, Shader};
 use surfine::testing::constants;
-use surfine::{RefineParams, exact_spirv, records};
+use surfine::{RefineParams, Rules, exact_spirv, records};
 
 /// The constants that the engine gives to every kernel that declares them.
 fn known_constants() -> Vec<&'static str> {
@@ -360,13 +360,13 @@ fn records_are_laid_out_alike() {
     assert_eq!(wgsl_record(&module, "Point"), (point, size_of::<Point>()));
     let fan = members!(Fan { slots, near, left_over, around, conflicts });
     assert_eq!(wgsl_record(&module, "Fan"), (fan, size_of::<Fan>()));
-    let mut candidate = members!(Candidate { place, normal, state, corners, unused });
-    // The struct's own padding.
-    candidate.pop();
+    let candidate = members!(Candidate { place, normal, state, corners, size });
     assert_eq!(wgsl_record(&module, "Candidate"), (candidate.clone(), size_of::<Candidate>()));
-    // The insertion has the state as an atomic.
-    let insertion = SHADERS.iter().find(|s| s.name == "insertion").unwrap();
-    assert_eq!(wgsl_record(&parse(insertion), "SharedCandidate").0, candidate);
+    // These have the state as an atomic.
+    for name in ["insertion", "selection"] {
+        let shader = SHADERS.iter().find(|s| s.name == name).unwrap();
+        assert_eq!(wgsl_record(&parse(shader), "SharedCandidate").0, candidate, "{name}");
+    }
 
     let mut params = members!(Params {
         origin,
@@ -471,11 +471,16 @@ fn constants_are_those_of_the_reference() {
     }
 }
 
-/// The stages by their words, as the reference reports them.
-fn stages() -> Vec<&'static str> {
+/// The stages of both selections by their words, as the reference reports them.
+fn stages() -> BTreeSet<&'static str> {
     let points = surfine_points::shapes::hexagonal_grid(1);
-    let refined = surfine_reference::refine(&points, &RefineParams::default()).unwrap();
-    refined.reports[0].stages.iter().map(|(stage, _)| *stage).collect()
+    let stages = |largest_first: bool| {
+        let rules = Rules { largest_first, ..Rules::ALL };
+        let params = RefineParams { rules, ..RefineParams::default() };
+        let refined = surfine_reference::refine(&points, &params).unwrap();
+        refined.reports[0].stages.iter().map(|(stage, _)| *stage).collect::<Vec<_>>()
+    };
+    [true, false].into_iter().flat_map(stages).collect()
 }
 
 #[test]
@@ -484,7 +489,7 @@ fn stages_have_one_word_everywhere() {
     let text = fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     let headings: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("## ")).collect();
     let stages = stages();
-    assert_eq!(stages.len(), 9);
+    assert_eq!(stages.len(), 10);
     for stage in &stages {
         let found = headings.iter().any(|h| h.split_whitespace().next() == Some(stage));
         assert!(found, "docs/algorithm.md has no heading `## {stage}`");

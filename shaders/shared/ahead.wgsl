@@ -33,30 +33,35 @@ fn cover_ring(p: u32, size: u32) {
         return;
     }
     let own = params.points + params.candidates;
+    let center = points[p].position;
     let ends_here = is_on_curve(p);
     var farthest = 0u;
     // Each side is between two members: the one before looks back on it.
-    var back = side_cover(size - 1u, size, ends_here);
+    let first = word(ORDER, 0u);
+    let last = word(ORDER, size - 1u);
+    var member = first;
+    var offset = place_of(first) - center;
+    let is_closed = number(ANGLE, first) + TAU - number(ANGLE, last) < PI && !ends_here;
+    var back = select(0u, cover(offset - (place_of(last) - center)), is_closed);
     for (var i = 0u; i < size; i++) {
-        let member = word(ORDER, i);
-        let ahead = side_cover(i, size, ends_here);
-        let radius = cover(vector(PLACE, member));
+        let is_last = i + 1u == size;
+        let after = word(ORDER, select(i + 1u, 0u, is_last));
+        let offset_after = place_of(after) - center;
+        let is_open = select(number(ANGLE, after) - number(ANGLE, member) >= PI, !is_closed, is_last);
+        let ahead = select(cover(offset_after - offset), 0u, is_open);
+        let radius = cover(offset);
         farthest = max(farthest, radius);
-        atomicMax(&next_radii[own + word(ID, member)], max(radius, max(back, ahead)));
+        raise(own + word(ID, member), max(radius, max(back, ahead)));
         back = ahead;
+        member = after;
+        offset = offset_after;
     }
-    atomicMax(&next_radii[own + p], farthest);
+    raise(own + p, farthest);
 }
 
-/// What covers the side from the member at place i to the next one; 0 where there is none.
-fn side_cover(i: u32, size: u32, ends_here: bool) -> u32 {
-    let last = i + 1u == size;
-    let a = word(ORDER, i);
-    let b = word(ORDER, select(i + 1u, 0u, last));
-    let to = number(ANGLE, b);
-    let gap = select(to, to + TAU, last) - number(ANGLE, a);
-    if gap >= PI || (last && ends_here) {
-        return 0u;
+/// Raises a radius. Most are large enough: to look costs less than to write.
+fn raise(at: u32, radius: u32) {
+    if atomicLoad(&next_radii[at]) < radius {
+        atomicMax(&next_radii[at], radius);
     }
-    return cover(vector(PLACE, b) - vector(PLACE, a));
 }

@@ -15,11 +15,12 @@ struct Point {
 struct Fan {
     /// The first of its ring entries and their number: its slots.
     slots: vec2<u32>,
-    /// Within this distance new points are new neighbours: λ1 r, or less in the first step.
+    /// Within this distance new points are new neighbours: λ1 r, or less in the first step. For a selection among all candidates
+    /// λ1 times the distance to the farthest neighbour.
     near: f32,
     /// A bit for each kernel that leaves it to its variant with rows in the arena.
     left_over: u32,
-    /// The first of the candidates around it and their number.
+    /// The first of the candidates around it and their number; of the selection, those in N'.
     around: vec2<u32>,
     /// The number of its conflicts, which follow these, and how many of them come first since they choose their class before it.
     conflicts: vec2<u32>,
@@ -34,6 +35,9 @@ struct Candidate {
     state: u32,
     /// Corners of its triangle, smallest index first and orientation kept.
     corners: vec3<u32>,
+    /// ρ, or λ1 times the distance from its corners to their farthest neighbours in the mean, whichever is larger. By the paper's
+    /// selection ρ.
+    size: f32,
 }
 
 /// What stays the same for all dispatches of one step.
@@ -123,6 +127,9 @@ const NEXT_RING: u32 = 8u;
 // States of a candidate besides the class that inserted it.
 const FREE: u32 = 0xffffffffu;
 const ON_CURVE: u32 = 0u;
+/// Inserted by the selection, which has no classes; and not decided yet.
+const INSERTED: u32 = 1u;
+const WAITING: u32 = 0xfffffffeu;
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<uniform> dispatch: Dispatch;

@@ -20,6 +20,12 @@ pub(crate) fn literal(levels: u32) -> RefineParams {
     RefineParams { levels, rules: Rules::LITERAL, ..RefineParams::default() }
 }
 
+/// That many levels by all rules but `largest_first`: with the paper's selection, around one point after the other.
+pub(crate) fn by_gaps(levels: u32) -> RefineParams {
+    let rules = Rules { largest_first: false, ..Rules::ALL };
+    RefineParams { levels, rules, ..RefineParams::default() }
+}
+
 /// Refines points that are fit for it.
 pub(crate) fn refine(points: &PointSet, params: &RefineParams) -> Refined {
     surfine_reference::refine(points, params).expect("the points and parameters are fit")

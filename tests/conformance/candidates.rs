@@ -41,7 +41,7 @@ fn candidates_are_those_of_the_reference() {
 
         let run = step.run("candidates", [0; 4], expected.len());
         let counters = device.counters();
-        device.run(run, &[&points, &candidates, &counters, &curves]);
+        device.run(run, &[&points, &fans, &candidates, &counters, &curves]);
         let widest = f32::from_bits(device.read_counters(&counters, &step.name).widest);
         let scale = expected.rho.iter().copied().fold(0.0, f32::max);
         must(compare(&what("largest rho"), &[scale], &[widest], device.allows(POSITION), scale));
@@ -53,6 +53,9 @@ fn candidates_are_those_of_the_reference() {
         must(compare_equal(&what("corners and states"), &rest(&rows), &rest(&found)));
         let allowed = device.allows(POSITION);
         must(compare(&what("places"), &places(&rows), &places(&found), allowed, scale));
+        let sizes = |c: &[Candidate]| c.iter().map(|c| c.size).collect::<Vec<_>>();
+        let allowed = device.allows(RADIUS);
+        must(compare(&what("sizes"), &sizes(&rows), &sizes(&found), allowed, scale));
         let allowed = device.allows(NORMAL);
         must(compare(&what("normals"), &normals(&rows), &normals(&found), allowed, 1.0));
     }

@@ -91,19 +91,26 @@ pub(crate) fn whole() -> Vec<(Cloud, u32)> {
     clouds
 }
 
-/// Accurate, fuzzy, simplified, and the paper's text.
-pub(crate) fn variants() -> [RefineParams; 4] {
+/// Accurate, fuzzy and simplified; the same with the paper's selection, and the paper's text.
+pub(crate) fn variants() -> [RefineParams; 6] {
     let accurate = RefineParams::default();
     let fuzzy = RefineParams { neighborhood: Neighborhood::Fuzzy, ..accurate.clone() };
     let simplified = RefineParams { simplified: true, ..accurate.clone() };
+    let rules = Rules { largest_first: false, ..Rules::ALL };
+    let [by_gaps, simplified_by_gaps] =
+        [&accurate, &simplified].map(|params| RefineParams { rules, ..params.clone() });
     let literal = RefineParams { rules: Rules::LITERAL, ..accurate.clone() };
-    [accurate, fuzzy, simplified, literal]
+    [accurate, fuzzy, simplified, by_gaps, simplified_by_gaps, literal]
 }
 
 /// What tells a variant from the others.
 pub(crate) fn describe(params: &RefineParams) -> String {
     let RefineParams { neighborhood, simplified, rules, .. } = params;
-    let rules = if *rules == Rules::LITERAL { "literal" } else { "all rules" };
+    let rules = match *rules {
+        Rules::ALL => "all rules",
+        Rules::LITERAL => "literal",
+        _ => "without largest_first",
+    };
     format!("{neighborhood:?}, simplified {simplified}, {rules}")
 }
 

@@ -1,7 +1,7 @@
 //! The colouring rounds and the sort by class.
 
 use crate::conflicts::ConflictBuffers;
-use crate::harness::{Device, GUARD_WORD, Step, compare_equal, device, must, steps};
+use crate::harness::{Device, GUARD_WORD, Step, compare_equal, device, must, steps_with};
 use surfine::testing::Buffer;
 
 /// Ranges of priorities, as the kernels have them.
@@ -30,7 +30,7 @@ fn by_priority(device: &mut Device, step: &Step) -> Buffer {
 #[test]
 fn classes_are_those_of_the_reference_after_enough_rounds() {
     let mut device = device();
-    for step in steps() {
+    for step in steps_with(false) {
         let n = step.level.len();
         let graph = ConflictBuffers::compute(&mut device, step, "conflicts_large");
         let graph = graph.expect("the arena holds all");
@@ -74,7 +74,7 @@ fn classes_are_those_of_the_reference_after_enough_rounds() {
 #[test]
 fn points_are_sorted_by_class() {
     let mut device = device();
-    for step in steps() {
+    for step in steps_with(false) {
         let (n, members) = (step.level.len(), &step.state.classes.members);
         let numbers: Vec<u32> = step.state.classes.class.iter().map(|c| c + 1).collect();
         let classes = device.buffer("classes", &numbers);

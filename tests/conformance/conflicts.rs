@@ -2,7 +2,7 @@
 
 use crate::harness::{
     ARENA_WORDS, CONFLICTS, Device, MIRROR_LINKS, Step, compare_equal, device, grid_words, must,
-    steps,
+    steps_with,
 };
 use surfine::records::{Counters, Fan};
 
@@ -87,7 +87,7 @@ fn sorted(mut list: Vec<u32>) -> Vec<u32> {
 #[test]
 fn lists_and_graph_are_those_of_the_reference() {
     let mut device = device();
-    for step in steps() {
+    for step in steps_with(false) {
         let n = step.level.len();
         let reference = &step.state.conflicts;
         for kernel in ["conflicts", "conflicts_large"] {

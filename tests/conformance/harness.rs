@@ -13,6 +13,7 @@ use surfine_features::{Features, Records};
 use surfine_points::{Grid, PointSet};
 use surfine_reference::boundary::boundary;
 use surfine_reference::commit::commit;
+use surfine_reference::conflicts::Conflicts;
 use surfine_reference::insertion::Order;
 use surfine_reference::neighborhood::neighborhood;
 use surfine_reference::{Level, LevelState, point_grid, run_level};
@@ -137,6 +138,11 @@ pub(crate) fn steps() -> &'static [Step] {
     &STEPS
 }
 
+/// Those that select new points among all candidates, or those that do around one point after the other.
+pub(crate) fn steps_with(largest_first: bool) -> impl Iterator<Item = &'static Step> {
+    steps().iter().filter(move |step| step.refine.rules.largest_first == largest_first)
+}
+
 fn all_steps() -> Vec<Step> {
     let mut steps = Vec::new();
     let outlined = small_outlined();
@@ -235,7 +241,7 @@ impl Step {
         for p in 0..self.level.len() {
             let slots = rings.slots(p);
             let around = conflicts.around.of(p).len() as u32;
-            let before = conflicts.before.of(p).len() as u32;
+            let before = conflicts_before(conflicts, p).len() as u32;
             fans.push(Fan {
                 slots: [slots.start as u32, slots.len() as u32],
                 near: candidates.near[p],
@@ -252,7 +258,7 @@ impl Step {
     /// The lists of [`Step::fans`].
     pub(crate) fn around(&self) -> Vec<u32> {
         let conflicts = &self.state.conflicts;
-        let of = |p: usize| [conflicts.around.of(p), conflicts.before.of(p)].concat();
+        let of = |p: usize| [conflicts.around.of(p), conflicts_before(conflicts, p)].concat();
         (0..self.level.len()).flat_map(of).collect()
     }
 
@@ -264,7 +270,7 @@ impl Step {
             normal: c.normals[i].to_array(),
             state: if i < c.first_on_curve { FREE } else { ON_CURVE },
             corners: c.corners[i],
-            unused: 0,
+            size: c.sizes[i],
         };
         (0..c.len()).map(candidate).collect()
     }
@@ -275,6 +281,11 @@ impl Step {
         let decide = |(c, &state): (Candidate, &u32)| Candidate { state, ..c };
         self.candidates().into_iter().zip(states).map(decide).collect()
     }
+}
+
+/// The conflicts of a point with those that choose before it; a selection among all candidates has none.
+fn conflicts_before(conflicts: &Conflicts, p: usize) -> &[u32] {
+    if conflicts.before.is_empty() { &[] } else { conflicts.before.of(p) }
 }
 
 /// A grid as the kernels have it: where each cell begins, and bits of the positions of the entries with their indices.
@@ -289,6 +300,7 @@ pub(crate) fn grid_words(grid: &Grid) -> (Vec<u32>, Vec<[u32; 4]>) {
 /// States of a candidate, as `shaders/shared/records.wgsl` has them.
 pub(crate) const FREE: u32 = u32::MAX;
 pub(crate) const ON_CURVE: u32 = 0;
+pub(crate) const WAITING: u32 = u32::MAX - 1;
 
 // Bits of the kernels that leave points over.
 pub(crate) const NEIGHBORHOOD: u32 = 1;

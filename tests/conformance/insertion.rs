@@ -1,7 +1,7 @@
 //! The insertion kernel, class by class, with private rows and with rows in the arena, on the reference's candidates and classes.
 
 use crate::harness::{
-    ARENA_WORDS, Device, INSERTION, Step, compare, compare_equal, device, must, steps,
+    ARENA_WORDS, Device, INSERTION, Step, compare, compare_equal, device, must, steps_with,
 };
 use crate::tolerance::RADIUS;
 use surfine::records::Candidate;
@@ -50,7 +50,7 @@ fn insert(device: &mut Device, step: &Step, arrange: fn(&mut Vec<u32>)) -> (Vec<
 #[test]
 fn decisions_and_radii_are_those_of_the_reference() {
     let mut device = device();
-    for step in steps() {
+    for step in steps_with(false) {
         let (states, radii) = insert(&mut device, step, |_| ());
         let expected = &step.state.insertion;
         must(compare_equal(&format!("{}: states", step.name), &expected.states, &states));
@@ -69,7 +69,7 @@ fn decisions_and_radii_are_those_of_the_reference() {
 #[test]
 fn the_order_inside_a_class_does_not_matter() {
     let mut device = device();
-    for step in steps() {
+    for step in steps_with(false) {
         let ascending = insert(&mut device, step, |_| ());
         let descending = insert(&mut device, step, |list| list.reverse());
         must(compare_equal(&format!("{}: states", step.name), &ascending.0, &descending.0));

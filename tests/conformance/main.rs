@@ -17,5 +17,6 @@ mod insertion;
 mod neighborhood;
 mod next_ring;
 mod refine;
+mod selection;
 mod slices;
 mod tolerance;

@@ -115,24 +115,19 @@ pub(crate) struct RefineArgs {
     pub(crate) adapter: Option<String>,
     #[command(flatten)]
     variant: VariantArgs,
-    /// Measure the angle between new neighbors straight instead of along the curved surface: a little faster
+    /// Measure the angle between new neighbors straight instead of along the curved surface; implies `--without largest_first`
     #[arg(long)]
     plain_angle: bool,
-    /// Keep to the text of the paper: without any rule of --without. Boundaries are still found (see --closed)
-    #[arg(long)]
-    literal: bool,
-    /// Leave out one rule beyond the paper; may be given several times
-    #[arg(long, value_name = "RULE", value_parser = rule(), conflicts_with = "literal")]
-    without: Vec<String>,
     /// Tolerance angle of the fuzzy planes, above 0 up to 90 degrees
     #[arg(long, value_name = "DEG", default_value = "30", value_parser = theta_f)]
     #[arg(allow_negative_numbers = true)]
     theta_f: f32,
-    /// Largest angle of a complete new neighborhood, above 0 and below 180 degrees
-    #[arg(long, value_name = "DEG", default_value = "89", value_parser = theta_c)]
+    /// Largest angle of a complete new neighborhood, above 0 and below 180 degrees; implies `--without largest_first` [default: 89]
+    #[arg(long, value_name = "DEG", value_parser = theta_c)]
     #[arg(allow_negative_numbers = true)]
-    theta_c: f32,
-    /// Share of the radius within which a new point is a new neighbor, above 0 up to 1
+    theta_c: Option<f32>,
+    /// Share of the distance to the farthest neighbors that new points count at least as large as, above 0 up to 1; with
+    /// `--without largest_first` the share of the radius within which a new point is a new neighbor
     #[arg(long, value_name = "X", default_value = "0.57735026", value_parser = lambda1)]
     #[arg(allow_negative_numbers = true)]
     lambda1: f32,
@@ -235,6 +230,23 @@ struct VariantArgs {
     /// Take the paper's four simplifications, and no look ahead to the next step: faster, for dense smooth clouds; implies fuzzy
     #[arg(long)]
     simplified: bool,
+    /// Keep to the text of the paper: without any rule of --without. Boundaries are still found (see --closed)
+    #[arg(long)]
+    literal: bool,
+    /// Leave out one rule beyond the paper; may be given several times
+    #[arg(long, value_name = "RULE", value_parser = rule(), conflicts_with = "literal")]
+    without: Vec<String>,
+}
+
+impl VariantArgs {
+    /// The rules beyond the paper; the names were checked.
+    fn rules(&self) -> Rules {
+        let mut rules = if self.literal { Rules::LITERAL } else { Rules::ALL };
+        for name in &self.without {
+            *rules.get_mut(name).expect("the name was checked") = false;
+        }
+        rules
+    }
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -288,7 +300,7 @@ impl RefineArgs {
 
     /// Which holes are filled; by the text none are, and raised radii close them.
     pub(crate) fn fill_holes(&self) -> FillChoice {
-        let usual = if self.literal { FillChoice::None } else { FillChoice::Raised };
+        let usual = if self.variant.literal { FillChoice::None } else { FillChoice::Raised };
         self.fill_holes.clone().unwrap_or(usual)
     }
 
@@ -299,24 +311,23 @@ impl RefineArgs {
 
     /// The parameters; each was checked when it was parsed.
     pub(crate) fn params(&self) -> RefineParams {
-        let mut rules = if self.literal { Rules::LITERAL } else { Rules::ALL };
-        for name in &self.without {
-            *rules.get_mut(name).expect("the name was checked") = false;
-        }
+        let usual = RefineParams::default();
+        let mut rules = self.variant.rules();
+        // Only the paper's selection knows these.
+        rules.largest_first &= self.theta_c.is_none() && !self.plain_angle;
         let boundary = match &self.boundary_property {
             _ if self.closed => Boundary::None,
             Some(name) => Boundary::Marked(name.clone()),
             None => Boundary::Angle(self.boundary_angle),
         };
-        let &Self { levels, plain_angle, .. } = self;
-        let &Self { theta_f, theta_c, lambda1, lambda2, .. } = self;
+        let &Self { levels, plain_angle, theta_f, lambda1, lambda2, .. } = self;
         RefineParams {
             levels,
             neighborhood: self.variant.neighborhood.into(),
             simplified: self.variant.simplified,
             plain_angle,
             theta_f,
-            theta_c,
+            theta_c: self.theta_c.unwrap_or(usual.theta_c),
             lambda1,
             lambda2,
             boundary,

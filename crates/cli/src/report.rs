@@ -344,10 +344,11 @@ impl Display for Level {
         let Self { points_in, points_out, growth, classes, isolated, .. } = self;
         let (ball, ring) = (self.ball_neighbors_mean, self.ring_neighbors_mean);
         writeln!(f, "{points_in} -> {points_out} points (x {growth:.3}) in {:.1} ms", self.ms())?;
-        writeln!(
-            f,
-            "         mean |N^E| {ball:.2}, mean |N| {ring:.2}, classes {classes}, isolated {isolated}"
-        )?;
+        write!(f, "         mean |N^E| {ball:.2}, mean |N| {ring:.2}, ")?;
+        if *classes > 0 {
+            write!(f, "classes {classes}, ")?;
+        }
+        writeln!(f, "isolated {isolated}")?;
         let stages: Vec<String> =
             self.stages_ms.iter().map(|(stage, ms)| format!("{stage} {ms:.1}")).collect();
         writeln!(f, "         ms: {}", stages.join(", "))

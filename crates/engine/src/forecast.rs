@@ -7,9 +7,10 @@
 
 use crate::buffers::with_headroom;
 use crate::records::{Candidate, Fan, Point};
+use crate::selection::LINKS;
 use crate::stages::Sizing;
 use crate::{Error, Gpu};
-use surfine_points::{Boundary, GridShape, RefineParams, Vec3};
+use surfine_points::{Boundary, GridShape, RefineParams, Rules, Vec3};
 
 /// Bytes of a word.
 const WORD: u64 = 4;
@@ -33,7 +34,7 @@ pub struct Forecast {
 }
 
 /// Points before the first step and after each one, on a closed surface: by Euler's formula it has two triangles for each
-/// point, but for four in all. Random points were measured to grow by 2.6 to 2.8 instead of 3, open surfaces by 2.9.
+/// point, but for four in all. Random points were measured to grow by 2.4 to 2.8 instead of 3, open surfaces by 2.9.
 pub fn points_by_level(points: usize, levels: u32) -> Vec<u64> {
     let grown = |n: &u64| Some(n.saturating_mul(3).saturating_sub(4).max(*n));
     std::iter::successors(Some(points as u64), grown).take(levels as usize + 1).collect()
@@ -55,7 +56,7 @@ impl Forecast {
             needs.reserve("boundary gaps", 4 * WORD * (input / 16 + 1024));
         }
         for pair in sizes.windows(2) {
-            Step::even(pair[0], pair[1], input).add_to(&mut needs, sizing);
+            Step::even(pair[0], pair[1], input).add_to(&mut needs, sizing, params.rules);
         }
         let device_bytes = needs.total();
         Self {
@@ -89,7 +90,7 @@ pub(crate) fn check_step(
     (level, records): (u32, usize),
 ) -> Result<(), Error> {
     let have = gpu.largest_binding();
-    let (what, need) = least_largest(records, sizing);
+    let (what, need) = least_largest(records, sizing, params.rules);
     if need <= have {
         return Ok(());
     }
@@ -101,10 +102,10 @@ pub(crate) fn check_step(
 }
 
 /// The largest buffer that a step needs whatever it finds, and its bytes.
-pub(crate) fn least_largest(records: usize, sizing: &Sizing) -> (&'static str, u64) {
+pub(crate) fn least_largest(records: usize, sizing: &Sizing, rules: Rules) -> (&'static str, u64) {
     // No room for more: what is needed at least.
     let mut needs = Needs { limit: 0, buffers: Vec::new() };
-    Step::least(records as u64).add_to(&mut needs, sizing);
+    Step::least(records as u64).add_to(&mut needs, sizing, rules);
     needs.largest()
 }
 
@@ -168,7 +169,7 @@ impl Step {
     }
 
     /// Its buffers, as the stages reserve them.
-    fn add_to(&self, needs: &mut Needs, sizing: &Sizing) {
+    fn add_to(&self, needs: &mut Needs, sizing: &Sizing, rules: Rules) {
         let &Self { points, after, added, slots, candidates } = self;
         let items = points.max(candidates);
         // The grid has no more cells for more points.
@@ -187,16 +188,24 @@ impl Step {
             ("numbers of candidates", 1, slots),
             ("first candidates", 1, points.saturating_add(1)),
             ("candidates", size_of::<Candidate>() as u64 / WORD, candidates),
-            ("candidates around points", 4 * entries / 3, points),
-            ("mirrored conflict heads", 1, points),
-            ("mirrored conflicts", 2 * (entries / 12), points),
-            ("classes", 1, points),
-            ("points without a class", 2, points),
-            ("class members", 1, points),
             ("radii", 2, points.saturating_add(candidates)),
             ("new indices", 1, candidates.saturating_add(1)),
         ];
-        for (name, words, items) in buffers {
+        let select = [
+            ("heads of links", 1, candidates),
+            ("links", 2 * u64::from(LINKS), points),
+            ("waiting", 2, candidates),
+        ];
+        let insert = [
+            ("candidates around points", 4 * entries / 3, points),
+            ("heads of links", 1, points),
+            ("links", 2 * (entries / 12), points),
+            ("classes", 1, points),
+            ("waiting", 2, points),
+            ("class members", 1, points),
+        ];
+        let own = if rules.largest_first { &select[..] } else { &insert };
+        for (name, words, items) in buffers.iter().chain(own).copied() {
             needs.reserve(name, items.saturating_mul(WORD * words));
         }
         needs.grow("points", after.saturating_mul(POINT));
@@ -224,7 +233,7 @@ mod tests {
         for records in [1, 100, 12_345, 10_000_000] {
             let params = RefineParams::default();
             let likely = Forecast::new(records, records, &params, &Sizing::default(), 1 << 27);
-            let (_, sure) = least_largest(records, &Sizing::default());
+            let (_, sure) = least_largest(records, &Sizing::default(), params.rules);
             assert!(sure <= likely.largest_buffer.1, "{records}: {sure} and {likely:?}");
             assert!(likely.device_bytes < likely.uneven_bytes);
         }

@@ -28,6 +28,7 @@ mod profile;
 pub mod records;
 mod refiner;
 mod scan;
+mod selection;
 pub mod shaders;
 mod slices;
 mod stages;

@@ -42,7 +42,7 @@ pub struct Candidate {
     pub normal: [f32; 3],
     pub state: u32,
     pub corners: [u32; 3],
-    pub unused: u32,
+    pub size: f32,
 }
 
 /// What stays the same for all dispatches of one step.

@@ -340,6 +340,7 @@ impl Refiner {
             buffers,
             scan,
             sizing,
+            largest_first: refine.rules.largest_first,
             next_ring: refine.effective_next_ring(),
             params,
             curve_points: on_curves.new,
@@ -403,12 +404,18 @@ impl Refiner {
         };
         clock.start("candidates");
         step.candidates().await?;
-        clock.start("conflicts");
-        let left_over = step.conflicts().await?.left_over;
-        clock.start("coloring");
-        let classes = step.coloring().await?;
-        clock.start("insertion");
-        let new = step.insertion(&classes, left_over).await?;
+        let (new, left_over, classes) = if refine.rules.largest_first {
+            clock.start("selection");
+            let (new, left_over) = step.selection().await?;
+            (new, left_over, 0)
+        } else {
+            clock.start("conflicts");
+            let left_over = step.conflicts().await?.left_over;
+            clock.start("coloring");
+            let classes = step.coloring().await?;
+            clock.start("insertion");
+            (step.insertion(&classes, left_over).await?, left_over, classes.len() - 1)
+        };
         clock.start("next_ring");
         step.next_ring(left_over).await?;
         clock.start("commit");
@@ -419,7 +426,7 @@ impl Refiner {
             points_out: params.points as usize + new as usize,
             ball_neighbors: u64::from(ball_high) << 32 | u64::from(ball_low),
             ring_neighbors: u64::from(step.params.slots),
-            classes: classes.len() - 1,
+            classes,
             isolated: isolated as usize,
             stages: Vec::new(),
         })

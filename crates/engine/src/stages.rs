@@ -19,9 +19,9 @@ use surfine_points::{Neighborhood, RefineParams};
 /// Ranges of priorities, as in `shaders/shared/priority.wgsl`: as many rounds of colouring have points that were not there before.
 const RANGES: u32 = 32;
 /// Rounds after these, or between two looks at what is left.
-const ROUNDS: u32 = 8;
+pub(crate) const ROUNDS: u32 = 8;
 /// Bytes of a word.
-const WORD: u64 = 4;
+pub(crate) const WORD: u64 = 4;
 
 /// How much is done and provided for at once. No result depends on it.
 #[derive(Clone, Copy, Debug)]
@@ -110,11 +110,13 @@ buffers! {
     candidates: "candidates",
     /// Lists of candidates around points and of conflicts.
     around: "candidates around points",
-    mirror_heads: "mirrored conflict heads",
-    mirror_links: "mirrored conflicts",
+    /// Links of conflicts to the point that did not find them, or of candidates to those that discard them.
+    mirror_heads: "heads of links",
+    mirror_links: "links",
     classes: "classes",
-    waiting: "points without a class",
-    rounds: "numbers of points without a class",
+    /// Points without a class, or candidates that are not decided, and their number.
+    waiting: "waiting",
+    rounds: "numbers of those who wait",
     workgroups: "workgroups",
     class_members: "class members",
     next_radii: "radii",
@@ -137,6 +139,8 @@ pub(crate) struct Step<'a> {
     pub(crate) buffers: &'a mut Buffers,
     pub(crate) scan: &'a mut Scan,
     pub(crate) sizing: &'a Sizing,
+    /// Whether new points are selected among all candidates.
+    pub(crate) largest_first: bool,
     /// Whether radii cover the next level's rings.
     pub(crate) next_ring: bool,
     pub(crate) params: Params,
@@ -148,7 +152,7 @@ pub(crate) struct Step<'a> {
 const WIDEST: u64 = offset_of!(Counters, widest) as u64 / WORD;
 /// Words of four from one item to the next of those that are sorted by cell.
 const POINT_STRIDE: u32 = 2;
-const CANDIDATE_STRIDE: u32 = 3;
+pub(crate) const CANDIDATE_STRIDE: u32 = 3;
 
 // Bits of `Counters::left_over`: the kernels that leave points to their variant with rows in the arena.
 const NEIGHBORHOOD: u32 = 1;
@@ -157,7 +161,7 @@ const INSERTION: u32 = 4;
 const NEXT_RING: u32 = 8;
 
 impl Step<'_> {
-    fn commands(&self) -> Commands<'_> {
+    pub(crate) fn commands(&self) -> Commands<'_> {
         self.uniforms.set(self.gpu, &self.params);
         Commands::new(self.gpu, self.uniforms)
     }
@@ -174,7 +178,10 @@ impl Step<'_> {
     }
 
     /// Reads the counters and single words (buffer, index).
-    async fn read(&self, words: &[(&Buffer, u32)]) -> Result<(Counters, Vec<u32>), Error> {
+    pub(crate) async fn read(
+        &self,
+        words: &[(&Buffer, u32)],
+    ) -> Result<(Counters, Vec<u32>), Error> {
         let size = size_of::<Counters>() as u64;
         let mut parts = vec![(self.buffers.counters.raw(), 0, size)];
         parts.extend(words.iter().map(|(buffer, i)| (buffer.raw(), WORD * u64::from(*i), WORD)));
@@ -188,7 +195,7 @@ impl Step<'_> {
     }
 
     /// Reads the counters alone.
-    async fn counters(&self) -> Result<Counters, Error> {
+    pub(crate) async fn counters(&self) -> Result<Counters, Error> {
         Ok(self.read(&[]).await?.0)
     }
 
@@ -212,7 +219,7 @@ impl Step<'_> {
     }
 
     /// Sorts points or candidates by cell.
-    async fn sort_into_grid(&mut self, items: u32, stride: u32) -> Result<(), Error> {
+    pub(crate) async fn sort_into_grid(&mut self, items: u32, stride: u32) -> Result<(), Error> {
         let cells = self.cells();
         self.buffers.grid.reserve(self.gpu, WORD * (u64::from(cells) + 1))?;
         self.buffers.places.reserve(self.gpu, 4 * WORD * u64::from(items))?;
@@ -233,7 +240,7 @@ impl Step<'_> {
     }
 
     /// Runs the variant of a kernel with rows in the arena for what was left over, in parts that fit there.
-    async fn run_large(
+    pub(crate) async fn run_large(
         &mut self,
         kernel: &str,
         buffers: fn(&Buffers) -> Vec<&Buffer>,
@@ -382,7 +389,7 @@ impl Step<'_> {
 
     async fn record_candidates(&self, commands: &mut Commands<'_>) {
         let b = &*self.buffers;
-        let buffers = [&b.points, &b.candidates, &b.counters, &b.curves];
+        let buffers = [&b.points, &b.fans, &b.candidates, &b.counters, &b.curves];
         commands.clear_range(&b.counters, WIDEST, 1);
         commands
             .run(self.kernels.get("candidates"), &buffers, [0; 4], self.params.candidates)
@@ -579,22 +586,31 @@ impl Step<'_> {
                 commands.dispatch(large, [class, first, count, classes], count).await;
             }
         }
+        self.record_new_indices(&mut commands).await;
+        commands.finish().await
+    }
+
+    /// Records the numbering of the new points.
+    pub(crate) async fn record_new_indices(&self, commands: &mut Commands<'_>) {
+        let (b, candidates) = (&*self.buffers, self.params.candidates);
         commands.clear(&b.new_indices, 1);
         let count = self.kernels.get("commit_count");
         commands.run(count, &[&b.candidates, &b.new_indices], [0; 4], candidates).await;
-        self.record_scan(&mut commands, &b.new_indices, 0, candidates + 1).await;
-        commands.finish().await
+        self.record_scan(commands, &b.new_indices, 0, candidates + 1).await;
     }
 
     /// `next_ring`: radii that cover the next level's rings.
     pub(crate) async fn next_ring(&mut self, left_over: u32) -> Result<(), Error> {
-        fn buffers(b: &Buffers) -> Vec<&Buffer> {
-            let inputs = [&b.points, &b.fans, &b.ring_entries, &b.candidates, &b.around];
+        fn with<'b>(b: &'b Buffers, around: &'b Buffer) -> Vec<&'b Buffer> {
+            let inputs = [&b.points, &b.fans, &b.ring_entries, &b.candidates, around];
             [&inputs[..], &[&b.next_radii, &b.arena, &b.counters, &b.curves]].concat()
         }
         if !self.next_ring {
             return Ok(());
         }
+        // The selection has left N' in the place of the numbers by slot.
+        let buffers: fn(&Buffers) -> Vec<&Buffer> =
+            if self.largest_first { |b| with(b, &b.numbers) } else { |b| with(b, &b.around) };
         let n = self.params.points;
         let mut commands = self.commands();
         commands.clear(&self.buffers.counters, words_of(&self.buffers.counters).into());
@@ -626,6 +642,6 @@ impl Step<'_> {
 }
 
 /// Whole words in a buffer.
-fn words_of(buffer: &Buffer) -> u32 {
+pub(crate) fn words_of(buffer: &Buffer) -> u32 {
     u32::try_from(buffer.size() / WORD).unwrap_or(u32::MAX)
 }

@@ -30,7 +30,7 @@ fn ratios(points: &PointSet, params: &RefineParams) -> (f64, f64) {
     assert_eq!(forecast.points_by_level.len(), result.level_sizes.len());
     for (&foretold, &found) in forecast.points_by_level.iter().zip(&result.level_sizes) {
         let ratio = found as f64 / foretold as f64;
-        assert!((0.7..1.1).contains(&ratio), "{found} points, {foretold} foretold");
+        assert!((0.65..1.1).contains(&ratio), "{found} points, {foretold} foretold");
     }
     let found = result.device_bytes as f64;
     (found / forecast.device_bytes as f64, found / forecast.uneven_bytes as f64)
@@ -52,9 +52,9 @@ fn uneven_clouds_take_no_more_than_is_foretold_for_them() {
     let random = sample(Shape::Torus, Sampling::Random, 2000, 1);
     let mut generous = random.clone();
     generous.radii.iter_mut().for_each(|radius| *radius *= 1.5);
-    // 1.2 to 1.6 of what is foretold for even clouds, and about half of the other.
+    // .8 of what is foretold for even clouds, and a quarter of the other.
     let (even, uneven) = ratios(&random, &levels(2));
-    assert!((0.8..2.0).contains(&even) && uneven < 1.0, "{even}, {uneven}");
+    assert!((0.6..2.0).contains(&even) && uneven < 1.0, "{even}, {uneven}");
     let (_, uneven) = ratios(&generous, &levels(1));
     assert!(uneven < 1.25, "with generous radii: {uneven}");
 }
@@ -62,7 +62,7 @@ fn uneven_clouds_take_no_more_than_is_foretold_for_them() {
 #[test]
 fn what_is_sure_to_fail_fails_before_the_first_stage() {
     let mut refiner = refiner(1 << 20);
-    let sphere = sample(Shape::Sphere, Sampling::BlueNoise, 12_000, 1);
+    let sphere = sample(Shape::Sphere, Sampling::BlueNoise, 24_000, 1);
     let foretold = refiner.forecast(&sphere, &levels(2)).unwrap_err();
     let mut stages = Vec::new();
     let failure = refiner.refine_on_device(&sphere, &levels(2), &mut |at| stages.push(at.stage));
@@ -72,7 +72,7 @@ fn what_is_sure_to_fail_fails_before_the_first_stage() {
     let Error::TooLarge { level, levels, points, need, have, .. } = failure else {
         panic!("{failure}");
     };
-    assert_eq!((level, levels, points), (1, 2, 12_000));
+    assert_eq!((level, levels, points), (1, 2, 24_000));
     assert!(need > have && have == 1 << 20, "{need} and {have}");
     // Without a step nothing but the cloud is needed.
     refiner.refine(&sphere, &self::levels(0)).unwrap();
@@ -81,7 +81,7 @@ fn what_is_sure_to_fail_fails_before_the_first_stage() {
 #[test]
 fn what_is_only_likely_to_fail_is_tried() {
     let mut refiner = refiner(1 << 20);
-    let sphere = sample(Shape::Sphere, Sampling::BlueNoise, 4000, 1);
+    let sphere = sample(Shape::Sphere, Sampling::BlueNoise, 6800, 1);
     refiner.refine(&sphere, &levels(1)).unwrap();
     let forecast = refiner.forecast(&sphere, &levels(2)).unwrap();
     assert!(forecast.largest_buffer.1 > 1 << 20, "{forecast:?}");
@@ -95,5 +95,5 @@ fn what_is_only_likely_to_fail_is_tried() {
     // Points without neighbours stay as few as they are.
     let mut lonely = sphere;
     lonely.radii.fill(1e-4);
-    assert_eq!(refiner.refine(&lonely, &levels(2)).unwrap().points.len(), 4000);
+    assert_eq!(refiner.refine(&lonely, &levels(2)).unwrap().points.len(), 6800);
 }

@@ -49,14 +49,16 @@ pub struct RefineParams {
     /// The four simplifications of section 7: Euclidean distance, plain angle, `N^f`, displacement after insertion; and no look
     /// ahead to the next level's rings.
     pub simplified: bool,
-    /// The angle between new neighbours is straight instead of curved (eq. 5); `simplified` asks for it too.
+    /// The angle between new neighbours is straight instead of curved (eq. 5); `simplified` asks for it too. Without
+    /// [`Rules::largest_first`].
     pub plain_angle: bool,
     /// Tolerance angle of the fuzzy planes in radians (section 4.1), in (0, π/2]. Default π/6.
     pub theta_f: f32,
-    /// Largest angle of a complete new neighbourhood in radians (section 5), in (0, π). Default 89°: regular grids tie
-    /// at the paper's π/2.
+    /// Largest angle of a complete new neighbourhood in radians (section 5), in (0, π); without [`Rules::largest_first`]. Default
+    /// 89°: regular grids tie at the paper's π/2.
     pub theta_c: f32,
-    /// Share of the radius within which a new point is a new neighbour (section 5), in (0, 1]. Default 1/√3.
+    /// Share of the radius within which a new point is a new neighbour (section 5), in (0, 1]; see also [`Rules::largest_first`].
+    /// Default 1/√3.
     pub lambda1: f32,
     /// Share of a new point's radius that is its discard sphere (eq. 11), in [0, 1]. Default 1/2.
     pub lambda2: f32,
@@ -93,6 +95,10 @@ pub struct Rules {
     /// Between points on a step, whose normals both lean the same way along their edge, a normal is interpolated without a
     /// bend.
     pub step_normals: bool,
+    /// New points are selected among the candidates of the whole cloud, the largest triangles first, instead of around one point
+    /// after the other. `theta_c` and `plain_angle` mean nothing then, and `lambda1` is the share of the distance to the farthest
+    /// neighbours that a triangle's size is no less than.
+    pub largest_first: bool,
     /// Radii cover the ring that a point has at the next level; not with `simplified`.
     pub next_ring: bool,
     /// A crease between two points keeps them from seeing each other.
@@ -118,6 +124,7 @@ impl Rules {
         natural_neighbors: true,
         sure_neighbors: true,
         step_normals: true,
+        largest_first: true,
         next_ring: true,
         separating_segments: true,
         valid_sides: true,
@@ -136,6 +143,7 @@ impl Rules {
         natural_neighbors: false,
         sure_neighbors: false,
         step_normals: false,
+        largest_first: false,
         next_ring: false,
         separating_segments: false,
         valid_sides: false,
@@ -144,7 +152,7 @@ impl Rules {
     };
 
     /// Each rule's name and whether it is on: the names of the kernels' `override`s, but for `even_steps`.
-    pub fn named(&self) -> [(&'static str, bool); 14] {
+    pub fn named(&self) -> [(&'static str, bool); 15] {
         [
             ("opposite_pairs", self.opposite_pairs),
             ("narrow_cones", self.narrow_cones),
@@ -155,6 +163,7 @@ impl Rules {
             ("natural_neighbors", self.natural_neighbors),
             ("sure_neighbors", self.sure_neighbors),
             ("step_normals", self.step_normals),
+            ("largest_first", self.largest_first),
             ("next_ring", self.next_ring),
             ("separating_segments", self.separating_segments),
             ("valid_sides", self.valid_sides),
@@ -175,6 +184,7 @@ impl Rules {
             "natural_neighbors" => Some(&mut self.natural_neighbors),
             "sure_neighbors" => Some(&mut self.sure_neighbors),
             "step_normals" => Some(&mut self.step_normals),
+            "largest_first" => Some(&mut self.largest_first),
             "next_ring" => Some(&mut self.next_ring),
             "separating_segments" => Some(&mut self.separating_segments),
             "valid_sides" => Some(&mut self.valid_sides),

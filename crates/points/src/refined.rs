@@ -48,7 +48,8 @@ pub struct LevelReport {
     pub ball_neighbors: u64,
     /// Sum over all points of the size of the one-ring `N_p`: the number of triangle fan corners.
     pub ring_neighbors: u64,
-    /// Number of classes that the conflict graph was coloured with.
+    /// Number of classes that the conflict graph was coloured with; 0 where new points are selected largest first, which needs
+    /// none.
     pub classes: usize,
     /// Points without any one-ring: they have no neighbour that passed, so nothing is inserted around them.
     pub isolated: usize,

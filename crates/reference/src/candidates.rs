@@ -13,7 +13,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 use std::ops::Range;
 use surfine_features::Record;
-use surfine_points::RefineParams;
+use surfine_points::{RefineParams, Rules};
 
 /// A fan triangle needs a gap below π(1 - 1e-4) radians: at π the fan has no triangle there.
 pub const WIDEST_GAP: f32 = surfine_features::STRAIGHT;
@@ -23,6 +23,8 @@ pub const WIDEST_SHEET: f32 = 2.617_994;
 
 /// Radii exceed the distance to the farthest natural neighbour by this factor.
 pub const NATURAL: f32 = 1.25;
+
+const THIRD: f32 = 1.0 / 3.0;
 
 /// The possible new points of all fans, by the slots to which they belong, then the new points on creases and boundaries,
 /// which are inserted in any case.
@@ -38,7 +40,11 @@ pub struct Candidates {
     pub corners: Vec<[u32; 3]>,
     /// The candidate of each slot; [`NO_POINT`] for slots without a triangle.
     pub of_slot: Vec<u32>,
-    /// Of each point: within this distance new points are new neighbours (section 5).
+    /// Their sizes, by which the selection goes: ρ, or λ1 times the distance from the corners to their farthest neighbours in the
+    /// mean, whichever is larger; by the paper's selection ρ. 0 where there is no candidate.
+    pub sizes: Vec<f32>,
+    /// Of each point: within this distance new points are new neighbours (section 5). For a selection among all candidates λ1
+    /// times the distance to the farthest neighbour.
     pub near: Vec<f32>,
     /// The first of the new points on creases and boundaries.
     pub first_on_curve: usize,
@@ -87,6 +93,7 @@ pub fn candidates(level: &Level, rings: &Rings, params: &RefineParams) -> Candid
         positions: vec![Vec3::ZERO; corners.len()],
         normals: vec![Vec3::ZERO; corners.len()],
         rho: vec![0.0; corners.len()],
+        sizes: vec![0.0; corners.len()],
         first_on_curve: corners.len(),
         corners,
         of_slot,
@@ -97,13 +104,14 @@ pub fn candidates(level: &Level, rings: &Rings, params: &RefineParams) -> Candid
         result.positions.push(point.position);
         result.normals.push(point.normal);
         result.rho.push(point.rho);
+        result.sizes.push(point.rho);
         result.corners.push(point.parents);
     }
     result
 }
 
 impl Candidates {
-    /// Finds position, normal and ρ of the candidates of all triangles.
+    /// Finds position, normal, ρ and size of the candidates of all triangles.
     fn find_all(&mut self, level: &Level, params: &RefineParams) {
         let formula = match (params.simplified, params.rules.sliver_normals) {
             (true, _) => triangles::simplified_points,
@@ -113,16 +121,21 @@ impl Candidates {
         let chunks = (self.positions.par_chunks_mut(BLOCK))
             .zip(self.normals.par_chunks_mut(BLOCK))
             .zip(self.rho.par_chunks_mut(BLOCK))
+            .zip(self.sizes.par_chunks_mut(BLOCK))
             .zip(self.corners.par_chunks(BLOCK));
+        let near = &self.near;
         let scratch = || (Triangles::EMPTY, NewPoints::EMPTY);
         chunks.with_min_len(32).for_each_init(scratch, |(triangles, new), chunk| {
-            let (((positions, normals), rho), corners) = chunk;
+            let ((((positions, normals), rho), sizes), corners) = chunk;
             triangles.gather(level, corners);
             formula(triangles, params.rules, new);
             for i in 0..corners.len() {
                 (positions[i], normals[i]) = (new.positions.get(i), new.normals.get(i));
             }
             rho.copy_from_slice(&new.rho[..corners.len()]);
+            for ((size, &rho), corners) in sizes.iter_mut().zip(&*rho).zip(corners) {
+                *size = size_of(near, *corners, rho, params.rules);
+            }
         });
     }
 }
@@ -275,17 +288,32 @@ fn place_of(rings: &Rings, slots: Range<usize>, id: u32) -> Option<usize> {
     }
 }
 
+/// The size of a triangle. Where neighbours are unevenly far, it counts as large as the neighbourhoods of its corners.
+#[inline(always)]
+fn size_of(near: &[f32], corners: [u32; 3], rho: f32, rules: Rules) -> f32 {
+    if !rules.largest_first || rho <= 0.0 {
+        return rho.max(0.0);
+    }
+    let [a, b, c] = corners.map(|corner| near[corner as usize]);
+    rho.max((a + b + c) * THIRD)
+}
+
 /// `λ1 r`. The radii of the input may be too large, and would take far points for new neighbours: in the first step they
-/// count as no more than [`NATURAL`] times the distance to the farthest neighbour.
+/// count as no more than [`NATURAL`] times the distance to the farthest neighbour. A selection among all candidates has no use
+/// for radii, and asks for that distance.
 fn near_radius(level: &Level, rings: &Rings, params: &RefineParams, p: usize) -> f32 {
-    let radius = level.radii[p];
-    if !params.rules.first_radii || level.step > 0 || rings.ring(p).is_empty() {
+    let (radius, rules) = (level.radii[p], params.rules);
+    let believes_radii = !rules.first_radii || level.step > 0 || rings.ring(p).is_empty();
+    if !rules.largest_first && believes_radii {
         return params.lambda1 * radius;
     }
     let mut farthest = 0.0f32;
     for entry in rings.ring(p) {
         let d = level.positions[entry.id as usize] - level.positions[p];
         farthest = farthest.max(d.dot(d));
+    }
+    if rules.largest_first {
+        return params.lambda1 * farthest.sqrt();
     }
     params.lambda1 * radius.min(NATURAL * farthest.sqrt())
 }

@@ -136,7 +136,7 @@ impl Search<'_> {
         let Self { level, candidates, params, .. } = self;
         let Scratch { reaches, nearby, normals, spheres, marks, met_by } = scratch;
         let (reach, center) = (&reaches[rank], level.seen(p));
-        let view = View::new(level, p, reach.largest, params.rules);
+        let view = View::new(level, center, reach.largest, params.rules);
         let normals = [&*normals[0], &*normals[1], &*normals[2]];
         let own_side = params.rules.own_side;
         mark(

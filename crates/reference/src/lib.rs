@@ -21,6 +21,7 @@ pub mod next_ring;
 pub mod pn_triangle;
 mod pool;
 mod refine;
+pub mod selection;
 mod triangles;
 pub mod visible;
 

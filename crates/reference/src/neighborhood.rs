@@ -178,7 +178,7 @@ fn is_doubtful(u: Vec3, n0: Vec3, n1: Vec3, rules: Rules) -> bool {
 /// Removes the members that lie behind others (eq. 8) and sorts the rest around the centre.
 fn one_ring(level: &Level, p: usize, own: Range<usize>, scratch: &mut Scratch, filter: &Filter) {
     let Scratch { members, kept, back, ring, .. } = scratch;
-    if let Some(view) = View::new(level, p, level.radii[p], filter.rules) {
+    if let Some(view) = View::new(level, level.seen(p), level.radii[p], filter.rules) {
         for i in own.clone() {
             let verdict = &mut members.verdicts[i];
             if *verdict != OUT && !view.sees(level.seen(members.ids[i] as usize)) {

@@ -7,8 +7,10 @@ use crate::coloring::{Classes, coloring};
 use crate::commit::commit;
 use crate::conflicts::{Conflicts, conflicts};
 use crate::insertion::{Insertion, Order, Stage, insertion};
+use crate::lists::Lists;
 use crate::neighborhood::{Rings, neighborhood};
 use crate::next_ring::{Covers, next_ring};
+use crate::selection::{overlaps, selection};
 use std::fmt;
 use std::mem::take;
 use std::time::{Duration, Instant};
@@ -184,6 +186,8 @@ pub struct LevelState {
     pub rings: Rings,
     pub candidates: Candidates,
     pub candidate_grid: Grid,
+    /// Of the selection, which has no conflicts but candidates around points.
+    pub overlaps: Lists,
     pub conflicts: Conflicts,
     pub classes: Classes,
     pub insertion: Insertion,
@@ -212,35 +216,57 @@ fn run_stages(
     clock: &mut Clock<'_>,
 ) -> (LevelState, LevelReport) {
     let candidates = clock.time("candidates", || candidates(level, &rings, params));
-    let (candidate_grid, conflicts) = clock.time("conflicts", || {
-        let candidate_grid = candidate_grid(&grid.shape, &candidates);
-        let conflicts = conflicts(level, &rings, &candidates, &candidate_grid, params);
-        (candidate_grid, conflicts)
-    });
-    let classes = clock.time("coloring", || coloring(&conflicts.before));
-    let inputs =
-        Stage { level, rings: &rings, candidates: &candidates, conflicts: &conflicts, params };
-    let insertion = clock.time("insertion", || insertion(inputs, &classes, order));
-    let covers = clock.time("next_ring", || next_ring(inputs, &insertion));
-    let report = LevelReport {
-        points_in: level.len(),
-        ball_neighbors: rings.ball_neighbors,
-        ring_neighbors: rings.len() as u64,
-        classes: classes.members.len(),
-        isolated: (0..level.len()).filter(|&p| rings.ring(p).is_empty()).count(),
-        ..LevelReport::default()
-    };
-    let state = LevelState {
+    let first = if params.rules.largest_first { "selection" } else { "conflicts" };
+    let candidate_grid = clock.time(first, || candidate_grid(&grid.shape, &candidates));
+    let mut state = LevelState {
         grid,
         rings,
         candidates,
         candidate_grid,
-        conflicts,
-        classes,
-        insertion,
-        covers,
+        overlaps: Lists::default(),
+        conflicts: Conflicts::default(),
+        classes: Classes::default(),
+        insertion: Insertion::default(),
+        covers: Covers::default(),
+    };
+    if params.rules.largest_first {
+        clock.time("selection", || state.select(level, params));
+    } else {
+        let LevelState { rings, candidates, candidate_grid, .. } = &state;
+        let graph = || conflicts(level, rings, candidates, candidate_grid, params);
+        state.conflicts = clock.time("conflicts", graph);
+        state.classes = clock.time("coloring", || coloring(&state.conflicts.before));
+        let insert = || insertion(state.stage(level, params), &state.classes, order);
+        state.insertion = clock.time("insertion", insert);
+    }
+    let cover = || next_ring(state.stage(level, params), &state.insertion);
+    state.covers = clock.time("next_ring", cover);
+    let rings = &state.rings;
+    let report = LevelReport {
+        points_in: level.len(),
+        ball_neighbors: rings.ball_neighbors,
+        ring_neighbors: rings.len() as u64,
+        classes: state.classes.members.len(),
+        isolated: (0..level.len()).filter(|&p| rings.ring(p).is_empty()).count(),
+        ..LevelReport::default()
     };
     (state, report)
+}
+
+impl LevelState {
+    /// What the stages after the candidates read.
+    pub fn stage<'a>(&'a self, level: &'a Level, params: &'a RefineParams) -> Stage<'a> {
+        let Self { rings, candidates, conflicts, .. } = self;
+        Stage { level, rings, candidates, conflicts, params }
+    }
+
+    /// Selects the new points, the largest triangles first.
+    fn select(&mut self, level: &Level, params: &RefineParams) {
+        let Self { rings, candidates, candidate_grid, .. } = self;
+        self.overlaps = overlaps(level, candidates, candidate_grid, params);
+        (self.insertion, self.conflicts.around) =
+            selection(level, rings, candidates, &self.overlaps);
+    }
 }
 
 /// The points of a level by cell.

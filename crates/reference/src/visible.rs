@@ -177,10 +177,9 @@ pub(crate) struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    /// The view of a point of the level, as far as the radius; `None` where there are no curves, and every point sees all others.
-    pub(crate) fn new(level: &'a Level, p: usize, radius: f32, rules: Rules) -> Option<Self> {
+    /// The view of a point, old or new, as far as the radius; `None` where there are no curves, and every point sees all others.
+    pub(crate) fn new(level: &'a Level, center: Seen, radius: f32, rules: Rules) -> Option<Self> {
         let curves = level.curves.as_ref()?;
-        let center = level.seen(p);
         let mut fences = Vec::new();
         if rules.separating_segments {
             let reach = (AROUND + 0.5) * radius + curves.reach;

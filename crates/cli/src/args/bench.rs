@@ -4,7 +4,7 @@ use super::VariantArgs;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::time::Duration;
-use surfine::{Boundary, RefineParams, Rules};
+use surfine::{Boundary, RefineParams};
 
 /// Sizes without `--sizes`: as many of them as a minute for each backend and the memory allow.
 const USUAL_SIZES: [usize; 4] = [10_000, 100_000, 1_000_000, 10_000_000];
@@ -54,9 +54,6 @@ pub(crate) struct BenchArgs {
     pub(crate) slice: Option<Duration>,
     #[command(flatten)]
     variant: VariantArgs,
-    /// Keep to the text of the paper: without any rule beyond it
-    #[arg(long)]
-    literal: bool,
     /// The surface is closed: look for no boundary
     #[arg(long)]
     closed: bool,
@@ -110,7 +107,7 @@ impl BenchArgs {
             neighborhood: self.variant.neighborhood.into(),
             simplified: self.variant.simplified,
             boundary: if self.closed { Boundary::None } else { usual.boundary },
-            rules: if self.literal { Rules::LITERAL } else { Rules::ALL },
+            rules: self.variant.rules(),
             ..usual
         }
     }

@@ -27,7 +27,7 @@ fn check_side(case: &Value, side: &Value) {
     let speed = number(&side["new_points_per_second"]);
     assert!((speed * median / new - 1.0).abs() < 1e-6, "{side}");
     let stages = side["stages_ms"].as_object().unwrap();
-    assert_eq!(stages.len(), 9, "{side}");
+    assert_eq!(stages.len(), 7, "{side}");
     let ms = stages.values().map(number).sum::<f64>() + number(&side["outside_ms"]);
     assert!((ms / (1e3 * median) - 1.0).abs() < 0.01, "{side}");
 }
@@ -46,7 +46,7 @@ fn tables_show_each_size_and_stage() {
         assert!(table.contains(part), "no `{part}` in:\n{table}");
     }
     let stages = table.split("stages from 1000").nth(1).expect("the largest size has stages");
-    for stage in ["neighborhood", "insertion", "outside", "whole run"] {
+    for stage in ["neighborhood", "selection", "outside", "whole run"] {
         assert!(stages.contains(stage), "no `{stage}` in:\n{table}");
     }
     assert!(!table.contains("left out") && !table.contains("gpu  "), "{table}");

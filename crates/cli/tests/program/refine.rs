@@ -126,11 +126,12 @@ fn json_adds_up() {
         let mean = |name: &str| level[name].as_f64().unwrap();
         assert!(mean("ball_neighbors_mean") >= mean("ring_neighbors_mean"));
         assert!((5.0..7.0).contains(&mean("ring_neighbors_mean")));
-        assert!(count(&level["classes"]) > 0);
+        // Only the paper's selection has classes.
+        assert_eq!(level["classes"], 0);
         assert_eq!(level["isolated"], 0);
         let stages = level["stages_ms"].as_object().unwrap();
         // Boundaries are looked for in the input alone.
-        assert_eq!(stages.len(), if points == 400 { 9 } else { 8 });
+        assert_eq!(stages.len(), if points == 400 { 7 } else { 6 });
         ms += stages.values().map(|t| t.as_f64().unwrap()).sum::<f64>();
         points = count(&level["points_out"]);
     }
@@ -176,28 +177,39 @@ fn options_reach_the_refinement() {
     let folder = Folder::with_sample("torus", "300");
     folder.refine(&[]);
     let usual = folder.bytes("out.ply");
-    let options: [&[&str]; 10] = [
-        &["--plain-angle"],
+    let options: [&[&str]; 9] = [
         &["--literal"],
         &["--without", "next_ring"],
+        &["--without", "largest_first"],
         &["--levels", "1"],
         &["--neighborhood", "fuzzy"],
         &["--simplified"],
         &["--theta-f", "80"],
-        &["--theta-c", "60"],
-        &["--lambda1", "0.3"],
+        &["--lambda1", "0.9"],
         &["--lambda2", "0.9"],
     ];
     for more in options {
         folder.refine(more);
         assert!(folder.bytes("out.ply") != usual, "{more:?} changes nothing");
     }
+    // The paper's selection has parameters of its own, which ask for it.
+    folder.refine(&["--theta-c", "89"]);
+    let by_gaps = folder.bytes("out.ply");
+    folder.refine(&["--without", "largest_first"]);
+    assert!(folder.bytes("out.ply") == by_gaps, "--theta-c asks for the paper's selection");
+    for more in [["--theta-c", "60"], ["--plain-angle", "--quiet"]] {
+        folder.refine(&more);
+        assert!(folder.bytes("out.ply") != by_gaps, "{more:?} changes nothing");
+    }
+    let report = folder.refine_json(&["--literal"]);
+    let levels = report["levels"].as_array().unwrap();
+    assert!(levels.iter().all(|level| level["classes"].as_u64().unwrap() > 0), "{report}");
     let report = folder.refine_json(&["--simplified"]);
     assert_eq!(report["params"]["neighborhood"], "fuzzy");
     assert_eq!(report["params"]["simplified"], true);
-    assert_eq!(report["params"]["rules"].as_array().unwrap().len(), 14);
+    assert_eq!(report["params"]["rules"].as_array().unwrap().len(), 15);
     let report = folder.refine_json(&["--without", "own_side", "--without", "next_ring"]);
-    assert_eq!(report["params"]["rules"].as_array().unwrap().len(), 12);
+    assert_eq!(report["params"]["rules"].as_array().unwrap().len(), 13);
 }
 
 #[test]

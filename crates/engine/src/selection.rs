@@ -1,0 +1,104 @@
+//! The selection of new points, the largest triangles first, as dispatches of its kernels.
+
+use crate::Error;
+use crate::records::Counters;
+use crate::stages::{CANDIDATE_STRIDE, ROUNDS, Step, WORD, words_of};
+use std::ops::Range;
+
+/// Links between candidates that are provided for each point before their need is known.
+pub(crate) const LINKS: u32 = 1;
+
+impl Step<'_> {
+    /// `selection`: which candidates are inserted, and the radii of all points. Returns the number of new points, and which
+    /// kernels leave points over.
+    pub(crate) async fn selection(&mut self) -> Result<(u32, u32), Error> {
+        let (n, candidates) = (u64::from(self.params.points), u64::from(self.params.candidates));
+        self.sort_into_grid(self.params.candidates, CANDIDATE_STRIDE).await?;
+        self.buffers.mirror_heads.reserve(self.gpu, WORD * candidates)?;
+        self.buffers.mirror_links.reserve(self.gpu, 2 * WORD * u64::from(LINKS) * n)?;
+        self.buffers.waiting.reserve(self.gpu, 2 * WORD * candidates)?;
+        self.buffers.rounds.reserve(self.gpu, 2 * WORD)?;
+        self.buffers.workgroups.reserve(self.gpu, 3 * WORD)?;
+        self.buffers.next_radii.reserve(self.gpu, 2 * WORD * (n + candidates))?;
+        self.buffers.new_indices.reserve(self.gpu, WORD * (candidates + 1))?;
+        self.scan.reserve(self.gpu, self.params.candidates + 1)?;
+        loop {
+            self.params.mirror_links = words_of(&self.buffers.mirror_links) / 2;
+            self.record_overlaps().await?;
+            let (counters, mut left) = self.run_selection(0..ROUNDS).await?;
+            if counters.mirrored > self.params.mirror_links {
+                let bytes = 2 * WORD * u64::from(counters.mirrored);
+                self.buffers.mirror_links.reserve(self.gpu, bytes)?;
+                continue;
+            }
+            let mut round = ROUNDS;
+            while left > 0 {
+                left = self.run_selection(round..round + ROUNDS).await?.1;
+                round += ROUNDS;
+            }
+            break;
+        }
+        self.record_radii().await?;
+        let last = self.params.candidates;
+        let (counters, totals) = self.read(&[(&self.buffers.new_indices, last)]).await?;
+        Ok((totals[0], counters.left_over))
+    }
+
+    /// Records who discards whom.
+    async fn record_overlaps(&self) -> Result<(), Error> {
+        let b = &*self.buffers;
+        let candidates = self.params.candidates;
+        let mut commands = self.commands();
+        commands.clear(&b.counters, words_of(&b.counters).into());
+        commands.clear(&b.mirror_heads, candidates.into());
+        commands.clear(&b.rounds, 2);
+        let inputs = [&b.points, &b.candidates, &b.grid, &b.places];
+        let outputs = [&b.mirror_heads, &b.mirror_links, &b.counters, &b.curves];
+        let kernel = self.kernels.get("selection_overlaps");
+        commands.run(kernel, &[&inputs[..], &outputs].concat(), [0; 4], candidates).await;
+        commands.finish().await
+    }
+
+    /// Some rounds. Returns the counters and how many candidates are left.
+    async fn run_selection(&self, rounds: Range<u32>) -> Result<(Counters, u32), Error> {
+        let b = &*self.buffers;
+        let mut commands = self.commands();
+        let graph = [&b.candidates, &b.mirror_heads, &b.mirror_links];
+        let state = [&b.waiting, &b.rounds, &b.counters];
+        let round = commands.bind(self.kernels.get("selection"), &[&graph[..], &state].concat());
+        let prepare = [&b.rounds, &b.workgroups];
+        let prepare = commands.bind(self.kernels.get("selection_round"), &prepare);
+        let row = self.gpu.device.limits().max_compute_workgroups_per_dimension;
+        for i in rounds.clone() {
+            if i == 0 {
+                commands.dispatch(&round, [0; 4], self.params.candidates).await;
+                continue;
+            }
+            commands.dispatch(&prepare, [i, row, 0, 0], 1).await;
+            // Few wait.
+            commands.dispatch_indirect(&round, [i, 0, 0, 0], &b.workgroups, 0).await;
+        }
+        commands.finish().await?;
+        let (counters, waiting) = self.read(&[(&b.rounds, rounds.end % 2)]).await?;
+        Ok((counters, waiting[0]))
+    }
+
+    /// Records the radii and the numbers of the new points.
+    async fn record_radii(&self) -> Result<(), Error> {
+        let b = &*self.buffers;
+        let (points, candidates) = (self.params.points, self.params.candidates);
+        let mut commands = self.commands();
+        commands.clear(&b.next_radii, 2 * (u64::from(points) + u64::from(candidates)));
+        // Nobody waits any more.
+        let links = [&b.candidates, &b.mirror_heads, &b.mirror_links, &b.waiting, &b.counters];
+        let stand_in = self.kernels.get("selection_stand_in");
+        commands.run(stand_in, &links, [0; 4], candidates).await;
+        let inputs = [&b.points, &b.fans, &b.of_slot, &b.candidates];
+        // The numbers of candidates by slot are with the slots' candidates now.
+        let outputs = [&b.waiting, &b.next_radii, &b.numbers, &b.counters];
+        let buffers = [&inputs[..], &outputs].concat();
+        commands.run(self.kernels.get("selection_radii"), &buffers, [0; 4], points).await;
+        self.record_new_indices(&mut commands).await;
+        commands.finish().await
+    }
+}

@@ -1,0 +1,186 @@
+//! The selection of new points among all candidates, the largest first (ours). Twins: `shaders/selection*.wgsl`.
+//!
+//! Section 5 selects new points around one point after the other, gap by gap, and what comes out depends on the order of the
+//! points. Here the candidates have an order of their own: the larger one comes first. Each is inserted unless it lies in the
+//! discard sphere (eq. 11) of one that was inserted before it; that one then stands for it in the fans, as in step 3 of
+//! section 5. Candidates overlap rarely, so almost all of them are decided at once.
+//!
+//! The size of a candidate ([`Candidates::sizes`]) takes the place of `ρ` in eq. 11. N' of a point is what stands for the
+//! candidates of its fan.
+
+use crate::candidates::Candidates;
+use crate::coloring::scramble;
+use crate::insertion::{COVER, FREE, Insertion, raise};
+use crate::lists::Lists;
+use crate::nearby::{Marks, Nearby};
+use crate::neighborhood::Rings;
+use crate::visible::{View, same_side};
+use crate::{Level, NO_POINT};
+use glam::Vec3;
+use rayon::prelude::*;
+use std::cmp::Reverse;
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use surfine_points::{Grid, RefineParams};
+
+/// State of all inserted candidates but those on curves: there are no classes.
+const INSERTED: u32 = 1;
+
+/// For each candidate those whose discard sphere holds it, of those before it.
+pub fn overlaps(
+    level: &Level,
+    candidates: &Candidates,
+    grid: &Grid,
+    params: &RefineParams,
+) -> Lists {
+    let sphere = |c: usize| params.lambda2 * candidates.sizes[c];
+    let scratch = <(Nearby, Marks)>::default;
+    let [discarded] =
+        Lists::in_chunks(candidates.len(), scratch, |(nearby, marks), own, [lists]| {
+            for h in own.clone() {
+                let (position, radius) = (candidates.positions[h], sphere(h));
+                if candidates.exists(h) {
+                    nearby.look(grid, h..own.end, |c| (candidates.positions[c], sphere(c)));
+                    let view = View::new(level, candidates.seen(h, level), radius, params.rules);
+                    for &i in nearby.in_ball(position, radius, marks) {
+                        let x = nearby.items[i as usize] as usize;
+                        let offset = candidates.positions[x] - position;
+                        let is_discarded = precedes(candidates, h, x)
+                            && offset.dot(offset) < radius * radius
+                            && same_side(
+                                params.rules,
+                                candidates.normals[h],
+                                candidates.normals[x],
+                            )
+                            && view.as_ref().is_none_or(|v| v.sees(candidates.seen(x, level)));
+                        lists.offer(x as u32, is_discarded);
+                    }
+                }
+                lists.end();
+            }
+        });
+    discarded.mirrored()
+}
+
+/// Whether a candidate is decided before another one. Points on curves are inserted before all others, whatever their place.
+fn precedes(candidates: &Candidates, a: usize, b: usize) -> bool {
+    let on_curve = |c: usize| c >= candidates.first_on_curve;
+    !on_curve(b) && (on_curve(a) || rank(candidates, a) > rank(candidates, b))
+}
+
+/// The rank of a candidate of a triangle: its size (positive floats are ordered as their bits are), ties by hashed index.
+fn rank(candidates: &Candidates, c: usize) -> (u32, u32) {
+    (candidates.sizes[c].to_bits(), scramble(c as u32))
+}
+
+/// Selects the new points, and gives all points their radii. Returns the new neighbourhoods too, each with its members once.
+pub fn selection(
+    level: &Level,
+    rings: &Rings,
+    candidates: &Candidates,
+    overlaps: &Lists,
+) -> (Insertion, Lists) {
+    let states = select(candidates, overlaps);
+    let bits = |radius: f32| AtomicU32::new(radius.to_bits());
+    let on_curve = level.curve_points.iter().map(|point| bits(point.radius));
+    let candidate_radii: Vec<AtomicU32> =
+        (0..candidates.first_on_curve).map(|_| bits(0.0)).chain(on_curve).collect();
+    let radii: Vec<AtomicU32> = level.radii.iter().map(|&radius| bits(radius)).collect();
+    let stands_for: Vec<u32> = (0..candidates.len())
+        .into_par_iter()
+        .map(|c| stand_in(candidates, overlaps.of(c), &states, c))
+        .collect();
+    let stand_in = |c: u32| if c == NO_POINT { c } else { stands_for[c as usize] };
+    let members = Lists::make(level.len(), |p, lists| {
+        let slots = &candidates.of_slot[rings.slots(p)];
+        let fan = slots.iter().map(|&c| stand_in(c));
+        let farthest = cover_fan(level.positions[p], fan.clone(), candidates, &candidate_radii);
+        if farthest > 0.0 {
+            radii[p].store(farthest.to_bits(), Relaxed);
+        }
+        for (i, member) in fan.enumerate() {
+            lists.offer(member, member != NO_POINT && !is_repeated(slots, i, member, stand_in));
+        }
+    });
+    let floats = |bits: Vec<AtomicU32>| {
+        bits.into_iter().map(|bits| f32::from_bits(bits.into_inner())).collect()
+    };
+    (Insertion { states, candidate_radii: floats(candidate_radii), radii: floats(radii) }, members)
+}
+
+/// Which candidates are inserted.
+fn select(candidates: &Candidates, overlaps: &Lists) -> Vec<u32> {
+    let mut waiting = Vec::new();
+    let mut states = vec![FREE; candidates.len()];
+    for (c, state) in states.iter_mut().enumerate().filter(|&(c, _)| candidates.exists(c)) {
+        if overlaps.of(c).is_empty() {
+            *state = if c < candidates.first_on_curve { INSERTED } else { 0 };
+        } else {
+            waiting.push(c);
+        }
+    }
+    waiting.par_sort_unstable_by_key(|&c| Reverse(rank(candidates, c)));
+    for c in waiting {
+        if overlaps.of(c).iter().all(|&h| states[h as usize] == FREE) {
+            states[c] = INSERTED;
+        }
+    }
+    states
+}
+
+/// Who stands for a candidate in the fans: itself if it was inserted, else the closest of those that discard it; ties go by
+/// index.
+fn stand_in(candidates: &Candidates, overlaps: &[u32], states: &[u32], c: usize) -> u32 {
+    if states[c] != FREE {
+        return c as u32;
+    }
+    let mut closest = (f32::INFINITY, NO_POINT);
+    for &h in overlaps.iter().filter(|&&h| states[h as usize] != FREE) {
+        let offset = candidates.positions[h as usize] - candidates.positions[c];
+        let d2 = offset.dot(offset);
+        if (d2, h) < closest {
+            closest = (d2, h);
+        }
+    }
+    closest.1
+}
+
+/// New radii around a point (section 5, end): the members of N', in the order of the fan, cover the point and their neighbours in
+/// N'. Returns what covers N', 0 if that is empty.
+fn cover_fan(
+    center: Vec3,
+    fan: impl DoubleEndedIterator<Item = u32> + Clone,
+    candidates: &Candidates,
+    radii: &[AtomicU32],
+) -> f32 {
+    let place = |c: u32| candidates.positions[c as usize];
+    let cover = |from: Vec3, to: Vec3| {
+        let d = to - from;
+        COVER * d.dot(d).sqrt()
+    };
+    let side = |a: u32, b: u32| {
+        if a == NO_POINT || b == NO_POINT { 0.0 } else { cover(place(a), place(b)) }
+    };
+    let (Some(first), Some(last)) = (fan.clone().next(), fan.clone().next_back()) else {
+        return 0.0;
+    };
+    let mut farthest = 0.0f32;
+    // Each side is between two members: the one before looks back on it.
+    let mut back = side(last, first);
+    for (c, after) in fan.clone().zip(fan.skip(1).chain([first])) {
+        let ahead = side(c, after);
+        if c != NO_POINT {
+            let radius = cover(center, place(c));
+            farthest = farthest.max(radius);
+            raise(&radii[c as usize], radius.max(back).max(ahead));
+        }
+        back = ahead;
+    }
+    farthest
+}
+
+/// Whether a member of slot `i` is in the fan in its own right, or for an earlier slot.
+fn is_repeated(slots: &[u32], i: usize, member: u32, stand_in: impl Fn(u32) -> u32) -> bool {
+    let repeats =
+        |(k, &c): (usize, &u32)| k != i && (k < i || c == member) && stand_in(c) == member;
+    slots[i] != member && slots.iter().enumerate().any(repeats)
+}

@@ -1,0 +1,62 @@
+// selection: one round of the selection of new points, the largest triangles first.
+// Twin: `select` in crates/reference/src/selection.rs
+// One invocation per candidate in round 0, then one per candidate that waits. dispatch: number of the round.
+//
+// A candidate is inserted unless one before it that discards it was. So what is inserted is what a sequential loop would insert,
+// whatever rounds it takes. Most candidates are linked to nobody.
+
+/// As Candidate, with the state atomic.
+@group(0) @binding(2) var<storage, read_write> candidates: array<SharedCandidate>;
+@group(0) @binding(3) var<storage, read> heads: array<u32>;
+@group(0) @binding(4) var<storage, read> links: array<vec2<u32>>;
+/// The candidates that wait in even rounds, then those that wait in odd ones.
+@group(0) @binding(5) var<storage, read_write> waiting: array<u32>;
+/// Number of both.
+@group(0) @binding(6) var<storage, read_write> rounds: array<atomic<u32>, 2>;
+@group(0) @binding(7) var<storage, read_write> counters: Counters;
+
+struct SharedCandidate {
+    place: vec4<f32>,
+    normal: vec3<f32>,
+    state: atomic<u32>,
+    corners: vec3<u32>,
+    size: f32,
+}
+
+@compute @workgroup_size(64)
+fn selection(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let i = linear_index(id, groups);
+    let parity = dispatch.x & 1u;
+    var c = i;
+    if dispatch.x > 0u {
+        if i >= atomicLoad(&rounds[parity]) {
+            return;
+        }
+        c = waiting[parity * params.candidates + i];
+    }
+    if c >= params.candidates || atomicLoad(&candidates[c].state) != WAITING {
+        return;
+    }
+    let state = decide(c);
+    if state == WAITING {
+        let at = atomicAdd(&rounds[1u - parity], 1u);
+        waiting[(1u - parity) * params.candidates + at] = c;
+    } else {
+        atomicStore(&candidates[c].state, state);
+    }
+    note_cut_loops(candidates[c].corners.x);
+}
+
+/// The state of a candidate, as far as those that discard it have theirs.
+fn decide(c: u32) -> u32 {
+    var state = INSERTED;
+    for (var link = heads[c]; link != 0u; link = links[link - 1u].y) {
+        let other = atomicLoad(&candidates[links[link - 1u].x].state);
+        if other == WAITING {
+            state = WAITING;
+        } else if other != FREE {
+            return FREE;
+        }
+    }
+    return state;
+}

@@ -1,0 +1,107 @@
+// selection: the new neighbourhoods N', and radii at the next level (section 5, end).
+// Twin: `selection` in crates/reference/src/selection.rs
+// One invocation per point.
+//
+// N' is what stands for the candidates of the fan, in their order. The point's radius covers N', and stays where that is
+// empty; the members of N' cover the point and their neighbours in N'.
+
+@group(0) @binding(2) var<storage, read> points: array<Point>;
+@group(0) @binding(3) var<storage, read_write> fans: array<Fan>;
+@group(0) @binding(4) var<storage, read> of_slot: array<u32>;
+@group(0) @binding(5) var<storage, read> candidates: array<Candidate>;
+/// Who stands for each candidate.
+@group(0) @binding(6) var<storage, read> stand_ins: array<u32>;
+/// Bits of the radii at the next level: of the points, then of the candidates.
+@group(0) @binding(7) var<storage, read_write> next_radii: array<atomic<u32>>;
+/// The members of N', each once, from the first slot of each point on.
+@group(0) @binding(8) var<storage, read_write> members: array<u32>;
+@group(0) @binding(9) var<storage, read_write> counters: Counters;
+
+/// Radii exceed the distances they must cover by this factor, so that rounding can't lose the farthest ring.
+const COVER: f32 = 1.02;
+/// Points with more members are left over by next_ring.wgsl.
+const LONGEST_NEXT: u32 = 48u;
+
+@compute @workgroup_size(64)
+fn selection_radii(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let p = linear_index(id, groups);
+    if p >= params.points {
+        return;
+    }
+    let slots = fans[p].slots;
+    let end = slots.x + slots.y;
+    var farthest = 0u;
+    var size = 0u;
+    // Each side is between two members: the one before looks back on it.
+    var c = NONE;
+    var back = 0u;
+    if slots.y > 0u {
+        c = stand_in(slots.x);
+        back = side_cover(stand_in(end - 1u), c);
+    }
+    for (var slot = slots.x; slot < end; slot++) {
+        let after = stand_in(select(slot + 1u, slots.x, slot + 1u == end));
+        let ahead = side_cover(c, after);
+        if c != NONE {
+            let radius = cover(candidates[c].place.xyz - points[p].position);
+            farthest = max(farthest, radius);
+            raise(c, max(radius, max(back, ahead)));
+        }
+        members[slots.x + size] = c;
+        size += u32(c != NONE && !is_repeated(slot, c, slots));
+        back = ahead;
+        c = after;
+    }
+    atomicStore(&next_radii[p], select(farthest, bitcast<u32>(points[p].radius), farthest == 0u));
+    fans[p].around = vec2(slots.x, size);
+    fans[p].left_over = 0u;
+    if size + slots.y + 1u > LONGEST_NEXT {
+        fans[p].left_over = NEXT_RING;
+        atomicOr(&counters.left_over, NEXT_RING);
+    }
+    note_cut_loops(p);
+}
+
+/// What covers the side between two members that follow each other; 0 where there is none.
+fn side_cover(a: u32, b: u32) -> u32 {
+    if a == NONE || b == NONE {
+        return 0u;
+    }
+    return cover(candidates[b].place.xyz - candidates[a].place.xyz);
+}
+
+/// Whether a member is in the fan in its own right, or for an earlier slot.
+fn is_repeated(slot: u32, member: u32, slots: vec2<u32>) -> bool {
+    if of_slot[slot] == member {
+        return false;
+    }
+    for (var other = slots.x; other < slots.x + slots.y; other++) {
+        let is_first = other < slot || of_slot[other] == member;
+        if is_first && other != slot && stand_in(other) == member {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Who stands for the candidate of a slot, or NONE.
+fn stand_in(slot: u32) -> u32 {
+    let c = of_slot[slot];
+    if c == NONE {
+        return NONE;
+    }
+    return stand_ins[c];
+}
+
+/// Bits of the radius that covers a distance: they are ordered as radii are.
+fn cover(distance: vec3<f32>) -> u32 {
+    return bitcast<u32>(COVER * sqrt(dot3(distance, distance)));
+}
+
+/// Raises the radius of a candidate. Most are large enough: to look costs less than to write.
+fn raise(c: u32, radius: u32) {
+    let at = params.points + c;
+    if atomicLoad(&next_radii[at]) < radius {
+        atomicMax(&next_radii[at], radius);
+    }
+}
