@@ -4,6 +4,7 @@
 //! first corner, from the smallest index on, whose fan has the triangle.
 
 use crate::columns::BLOCK;
+use crate::lists::filled;
 use crate::math::TAU;
 use crate::neighborhood::{RingEntry, Rings};
 use crate::triangles::{self, NewPoints, Triangles};
@@ -90,8 +91,8 @@ pub fn candidates(level: &Level, rings: &Rings, params: &RefineParams) -> Candid
     let near = |p| near_radius(level, rings, params, p);
     let near = (0..level.len()).into_par_iter().map(near).collect();
     let mut result = Candidates {
-        positions: vec![Vec3::ZERO; corners.len()],
-        normals: vec![Vec3::ZERO; corners.len()],
+        positions: filled(Vec3::ZERO, corners.len()),
+        normals: filled(Vec3::ZERO, corners.len()),
         rho: vec![0.0; corners.len()],
         sizes: vec![0.0; corners.len()],
         first_on_curve: corners.len(),

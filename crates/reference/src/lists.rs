@@ -121,6 +121,11 @@ impl<T> Lists<T> {
     }
 }
 
+/// So many entries of the same value, written by all cores: they will fill them, and fresh memory costs more than to write to it.
+pub(crate) fn filled<T: Copy + Send + Sync>(value: T, len: usize) -> Vec<T> {
+    (0..len).into_par_iter().with_min_len(1 << 14).map(|_| value).collect()
+}
+
 /// Appends an entry if it is wanted. It is written in any case: where about half of the entries are wanted, a branch would be
 /// guessed wrong often.
 #[inline(always)]

@@ -102,6 +102,13 @@ impl Nearby {
         Vec3::from_array(self.places.each_ref().map(|column| column[i as usize]))
     }
 
+    /// How many entries are in a ball.
+    pub(crate) fn count_in_ball(&self, center: Vec3, radius: f32) -> u32 {
+        let mut count = 0;
+        count_ball(self.places(), center, radius * radius, &mut count);
+        count
+    }
+
     /// The entries in a ball.
     pub(crate) fn in_ball<'a>(&self, center: Vec3, radius: f32, marks: &'a mut Marks) -> &'a [u32] {
         mark_ball(self.places(), center, radius * radius, marks.prepare(self.items.len()));
@@ -117,6 +124,17 @@ vectorized! {
         for i in 0..count {
             let offset = Vec3::new(x[i], y[i], z[i]) - center;
             marks[i] = u8::from(offset.dot(offset) <= limit);
+        }
+    }
+}
+
+vectorized! {
+    fn count_ball(places: [&[f32]; 3], center: Vec3, limit: f32, count: &mut u32) {
+        let len = places[0].len();
+        let [x, y, z] = places.map(|column| &column[..len]);
+        for i in 0..len {
+            let offset = Vec3::new(x[i], y[i], z[i]) - center;
+            *count += u32::from(offset.dot(offset) <= limit);
         }
     }
 }

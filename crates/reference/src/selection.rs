@@ -40,19 +40,23 @@ pub fn overlaps(
                 let (position, radius) = (candidates.positions[h], sphere(h));
                 if candidates.exists(h) {
                     nearby.look(grid, h..own.end, |c| (candidates.positions[c], sphere(c)));
-                    let view = View::new(level, candidates.seen(h, level), radius, params.rules);
-                    for &i in nearby.in_ball(position, radius, marks) {
-                        let x = nearby.items[i as usize] as usize;
-                        let offset = candidates.positions[x] - position;
-                        let is_discarded = precedes(candidates, h, x)
-                            && offset.dot(offset) < radius * radius
-                            && same_side(
-                                params.rules,
-                                candidates.normals[h],
-                                candidates.normals[x],
-                            )
-                            && view.as_ref().is_none_or(|v| v.sees(candidates.seen(x, level)));
-                        lists.offer(x as u32, is_discarded);
+                    // Most find themselves alone: to count costs less than to list.
+                    if nearby.count_in_ball(position, radius) > 1 {
+                        let view =
+                            View::new(level, candidates.seen(h, level), radius, params.rules);
+                        let inside = nearby.in_ball(position, radius, marks).iter();
+                        for x in inside.map(|&i| nearby.items[i as usize] as usize) {
+                            let offset = candidates.positions[x] - position;
+                            let is_discarded = precedes(candidates, h, x)
+                                && offset.dot(offset) < radius * radius
+                                && same_side(
+                                    params.rules,
+                                    candidates.normals[h],
+                                    candidates.normals[x],
+                                )
+                                && view.as_ref().is_none_or(|v| v.sees(candidates.seen(x, level)));
+                            lists.offer(x as u32, is_discarded);
+                        }
                     }
                 }
                 lists.end();
@@ -80,31 +84,55 @@ pub fn selection(
     overlaps: &Lists,
 ) -> (Insertion, Lists) {
     let states = select(candidates, overlaps);
-    let bits = |radius: f32| AtomicU32::new(radius.to_bits());
-    let on_curve = level.curve_points.iter().map(|point| bits(point.radius));
-    let candidate_radii: Vec<AtomicU32> =
-        (0..candidates.first_on_curve).map(|_| bits(0.0)).chain(on_curve).collect();
-    let radii: Vec<AtomicU32> = level.radii.iter().map(|&radius| bits(radius)).collect();
     let stands_for: Vec<u32> = (0..candidates.len())
         .into_par_iter()
         .map(|c| stand_in(candidates, overlaps.of(c), &states, c))
         .collect();
     let stand_in = |c: u32| if c == NO_POINT { c } else { stands_for[c as usize] };
-    let members = Lists::make(level.len(), |p, lists| {
-        let slots = &candidates.of_slot[rings.slots(p)];
-        let fan = slots.iter().map(|&c| stand_in(c));
-        let farthest = cover_fan(level.positions[p], fan.clone(), candidates, &candidate_radii);
-        if farthest > 0.0 {
-            radii[p].store(farthest.to_bits(), Relaxed);
-        }
-        for (i, member) in fan.enumerate() {
-            lists.offer(member, member != NO_POINT && !is_repeated(slots, i, member, stand_in));
+    let zeros = |len| (0..len).into_par_iter().map(|_| AtomicU32::new(0)).collect();
+    let (own, squares): (Vec<_>, Vec<_>) = (zeros(level.len()), zeros(candidates.len()));
+    let [members] = Lists::in_chunks(level.len(), Vec::new, |fan, points, [lists]| {
+        for p in points {
+            let slots = &candidates.of_slot[rings.slots(p)];
+            fan.clear();
+            fan.extend(slots.iter().map(|&c| Member::new(candidates, stand_in(c))));
+            own[p].store(cover_fan(level.positions[p], fan, &squares).to_bits(), Relaxed);
+            for (i, member) in fan.iter().enumerate() {
+                let is_new = member.id != NO_POINT && !is_repeated(slots, i, member.id, stand_in);
+                lists.offer(member.id, is_new);
+            }
+            lists.end();
         }
     });
-    let floats = |bits: Vec<AtomicU32>| {
-        bits.into_iter().map(|bits| f32::from_bits(bits.into_inner())).collect()
-    };
-    (Insertion { states, candidate_radii: floats(candidate_radii), radii: floats(radii) }, members)
+    let cover = |square: AtomicU32| COVER * f32::from_bits(square.into_inner()).sqrt();
+    let radii = own.into_par_iter().map(cover).zip(&level.radii);
+    let radii = radii.map(|(radius, &old)| if radius == 0.0 { old } else { radius }).collect();
+    let mut candidate_radii: Vec<f32> = squares.into_par_iter().map(cover).collect();
+    let on_curve = &mut candidate_radii[candidates.first_on_curve..];
+    for (radius, point) in on_curve.iter_mut().zip(&level.curve_points) {
+        *radius = radius.max(point.radius);
+    }
+    (Insertion { states, candidate_radii, radii }, members)
+}
+
+/// Who stands for a candidate of a fan.
+struct Member {
+    /// [`NO_POINT`] where the slot has no candidate.
+    id: u32,
+    place: Vec3,
+}
+
+impl Member {
+    fn new(candidates: &Candidates, id: u32) -> Self {
+        let place = candidates.positions.get(id as usize).copied().unwrap_or(Vec3::NAN);
+        Self { id, place }
+    }
+
+    /// The square of a distance; 0 where there is nobody.
+    fn squared(&self, from: Vec3) -> f32 {
+        let d = self.place - from;
+        d.dot(d).max(0.0)
+    }
 }
 
 /// Which candidates are inserted.
@@ -145,33 +173,17 @@ fn stand_in(candidates: &Candidates, overlaps: &[u32], states: &[u32], c: usize)
 }
 
 /// New radii around a point (section 5, end): the members of N', in the order of the fan, cover the point and their neighbours in
-/// N'. Returns what covers N', 0 if that is empty.
-fn cover_fan(
-    center: Vec3,
-    fan: impl DoubleEndedIterator<Item = u32> + Clone,
-    candidates: &Candidates,
-    radii: &[AtomicU32],
-) -> f32 {
-    let place = |c: u32| candidates.positions[c as usize];
-    let cover = |from: Vec3, to: Vec3| {
-        let d = to - from;
-        COVER * d.dot(d).sqrt()
-    };
-    let side = |a: u32, b: u32| {
-        if a == NO_POINT || b == NO_POINT { 0.0 } else { cover(place(a), place(b)) }
-    };
-    let (Some(first), Some(last)) = (fan.clone().next(), fan.clone().next_back()) else {
-        return 0.0;
-    };
+/// N'. Raises the squares of what they cover, and returns that of what covers N', 0 if N' is empty.
+fn cover_fan(center: Vec3, fan: &[Member], squares: &[AtomicU32]) -> f32 {
+    let Some(last) = fan.last() else { return 0.0 };
     let mut farthest = 0.0f32;
     // Each side is between two members: the one before looks back on it.
-    let mut back = side(last, first);
-    for (c, after) in fan.clone().zip(fan.skip(1).chain([first])) {
-        let ahead = side(c, after);
-        if c != NO_POINT {
-            let radius = cover(center, place(c));
-            farthest = farthest.max(radius);
-            raise(&radii[c as usize], radius.max(back).max(ahead));
+    let mut back = last.squared(fan[0].place);
+    for (member, after) in fan.iter().zip(fan[1..].iter().chain([&fan[0]])) {
+        let (own, ahead) = (member.squared(center), member.squared(after.place));
+        farthest = farthest.max(own);
+        if member.id != NO_POINT {
+            raise(&squares[member.id as usize], own.max(back).max(ahead));
         }
         back = ahead;
     }
