@@ -30,16 +30,16 @@ const BATCH: usize = 32;
 pub fn next_ring(stage: Stage<'_>, insertion: &Insertion) -> Covers {
     let points = stage.level.len();
     let zeros = |count| (0..count).map(|_| AtomicU32::new(0)).collect();
-    let covers: Vec<AtomicU32> = zeros(points + stage.candidates.len());
+    let squares: Vec<AtomicU32> = zeros(points + stage.candidates.len());
     if stage.params.effective_next_ring() {
         let batches = (0..points.div_ceil(BATCH)).into_par_iter();
         batches.with_min_len(8).for_each_init(Scratch::default, |scratch, batch| {
             let batch = batch * BATCH..((batch + 1) * BATCH).min(points);
-            cover_rings(stage, insertion, batch, scratch, &covers);
+            cover_rings(stage, insertion, batch, scratch, &squares);
         });
     }
-    let mut radii: Vec<f32> =
-        covers.into_iter().map(|bits| f32::from_bits(bits.into_inner())).collect();
+    let cover = |square: AtomicU32| COVER * f32::from_bits(square.into_inner()).sqrt();
+    let mut radii: Vec<f32> = squares.into_par_iter().map(cover).collect();
     let candidate_radii = radii.split_off(points);
     Covers { radii, candidate_radii }
 }
@@ -69,7 +69,7 @@ fn cover_rings(
     insertion: &Insertion,
     batch: Range<usize>,
     scratch: &mut Scratch,
-    covers: &[AtomicU32],
+    squares: &[AtomicU32],
 ) {
     let Stage { level, params, .. } = stage;
     let (fuzzy, sin_theta_f) =
@@ -81,7 +81,7 @@ fn cover_rings(
     scratch.members.project(fuzzy);
     for (rank, p) in batch.enumerate() {
         keep_ring(scratch, rank, fuzzy, sin_theta_f);
-        cover_ring(&mut scratch.ring, level.record(p).is_some(), p, covers);
+        cover_ring(&mut scratch.ring, level.record(p).is_some(), p, squares);
     }
 }
 
@@ -123,11 +123,11 @@ fn keep_ring(scratch: &mut Scratch, rank: usize, fuzzy: bool, sin_theta_f: f32) 
     }
 }
 
-/// The point covers the members, they cover it and, over gaps below π, each other. `on_curve` says that the sheet ends at
-/// the centre.
-fn cover_ring(ring: &mut [Member], on_curve: bool, p: usize, covers: &[AtomicU32]) {
+/// The point covers the members, they cover it and, over gaps below π, each other: raises the squares of what they cover.
+/// `on_curve` says that the sheet ends at the centre.
+fn cover_ring(ring: &mut [Member], on_curve: bool, p: usize, squares: &[AtomicU32]) {
     let farthest = ring.iter().map(|member| member.squared).fold(0.0, f32::max);
-    raise(&covers[p], COVER * farthest.sqrt());
+    raise(&squares[p], farthest);
     for i in 0..ring.len() {
         let last = i + 1 == ring.len();
         let after = if last { 0 } else { i + 1 };
@@ -141,6 +141,6 @@ fn cover_ring(ring: &mut [Member], on_curve: bool, p: usize, covers: &[AtomicU32
         }
     }
     for member in ring {
-        raise(&covers[member.id as usize], COVER * member.squared.sqrt());
+        raise(&squares[member.id as usize], member.squared);
     }
 }
