@@ -13,12 +13,18 @@ use surfine_points::{RefineParams, Rules};
 pub fn commit(level: &mut Level, state: &LevelState, params: &RefineParams) -> Vec<[u32; 3]> {
     let LevelState { candidates, insertion, covers, .. } = state;
     let larger = |(a, b): (&f32, &f32)| a.max(*b);
-    level.radii = insertion.radii.iter().zip(&covers.radii).map(larger).collect();
+    level.radii = insertion.radii.par_iter().zip(&covers.radii).map(larger).collect();
     let all = (0..candidates.len() as u32).into_par_iter();
     let inserted: Vec<u32> = all.filter(|&c| insertion.is_inserted(c as usize)).collect();
-    let (positions, normals) = new_points(level, candidates, params, &inserted);
-    level.positions.par_extend(positions);
-    level.normals.par_extend(normals);
+    if params.simplified {
+        let (positions, normals) = displaced(level, candidates, params.rules, &inserted);
+        level.positions.par_extend(positions);
+        level.normals.par_extend(normals);
+    } else {
+        let own = inserted.par_iter().map(|&c| c as usize);
+        level.positions.par_extend(own.clone().map(|c| candidates.positions[c]));
+        level.normals.par_extend(own.map(|c| candidates.normals[c]));
+    }
     let inserted = inserted.par_iter().map(|&c| c as usize);
     let radius = |c: usize| insertion.candidate_radii[c].max(covers.candidate_radii[c]);
     level.radii.par_extend(inserted.clone().map(radius));
@@ -26,27 +32,24 @@ pub fn commit(level: &mut Level, state: &LevelState, params: &RefineParams) -> V
     inserted.map(|c| candidates.corners[c]).collect()
 }
 
-/// Positions and normals of the inserted candidates as points of the next level.
-fn new_points(
+/// Positions and normals of the inserted candidates as points of the next level (section 7, simplification 4): the displacement is
+/// computed for inserted points only. The points on curves, which come last, are in their places.
+fn displaced(
     level: &Level,
     candidates: &Candidates,
-    params: &RefineParams,
+    rules: Rules,
     inserted: &[u32],
 ) -> (Vec<Vec3>, Vec<Vec3>) {
     let own = |&c: &u32| (candidates.positions[c as usize], candidates.normals[c as usize]);
     let (mut positions, mut normals): (Vec<Vec3>, Vec<Vec3>) = inserted.par_iter().map(own).unzip();
-    if params.simplified {
-        // Section 7, simplification 4: the displacement is computed for inserted points only. The points on curves, which come
-        // last, are in their places.
-        let smooth = inserted.partition_point(|&c| (c as usize) < candidates.first_on_curve);
-        let chunks = positions[..smooth].par_chunks_mut(BLOCK);
-        chunks
-            .zip(normals[..smooth].par_chunks_mut(BLOCK))
-            .zip(inserted.par_chunks(BLOCK))
-            .for_each(|((positions, normals), inserted)| {
-                displace(level, candidates, params.rules, inserted, positions, normals);
-            });
-    }
+    let smooth = inserted.partition_point(|&c| (c as usize) < candidates.first_on_curve);
+    positions[..smooth]
+        .par_chunks_mut(BLOCK)
+        .zip(normals[..smooth].par_chunks_mut(BLOCK))
+        .zip(inserted.par_chunks(BLOCK))
+        .for_each(|((positions, normals), inserted)| {
+            displace(level, candidates, rules, inserted, positions, normals);
+        });
     (positions, normals)
 }
 

@@ -11,6 +11,7 @@ use crate::lists::Lists;
 use crate::neighborhood::{Rings, neighborhood};
 use crate::next_ring::{Covers, next_ring};
 use crate::selection::{overlaps, selection};
+use rayon::prelude::*;
 use std::fmt;
 use std::mem::take;
 use std::time::{Duration, Instant};
@@ -108,7 +109,7 @@ pub fn refine_with(
         let parents = clock.time("commit", || commit(&mut level, &state, params));
         report.stages = clock.times;
         report.points_out = level.len();
-        result.parents.extend(parents);
+        result.parents.par_extend(parents);
         result.level_sizes.push(level.len());
         result.level_radii.extend(keep(&level));
         result.reports.push(report);
