@@ -6,6 +6,7 @@
 @group(0) @binding(3) var<storage, read> candidates: array<Candidate>;
 /// Number of inserted candidates before each one, and one more.
 @group(0) @binding(4) var<storage, read> new_indices: array<u32>;
+/// Bits of the radii at the next level: of the points, then of the candidates, then what next rings ask of the points.
 @group(0) @binding(5) var<storage, read> next_radii: array<u32>;
 /// Three corners of each new point's triangle.
 @group(0) @binding(6) var<storage, read_write> parents: array<u32>;
@@ -18,22 +19,18 @@ override simplified: bool = false;
 fn commit(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let index = linear_index(id, groups);
     if index < params.points {
-        points[index].radius = next_radius(index);
+        let covered = next_radii[params.points + params.candidates + index];
+        points[index].radius = bitcast<f32>(max(next_radii[index], covered));
     }
     if index < params.candidates && new_indices[index + 1u] != new_indices[index] {
         append_point(index, new_indices[index]);
     }
 }
 
-/// The larger of what the insertion and the next ring ask for.
-fn next_radius(index: u32) -> f32 {
-    return bitcast<f32>(max(next_radii[index], next_radii[params.points + params.candidates + index]));
-}
-
 fn append_point(c: u32, rank: u32) {
     var position = candidates[c].place.xyz;
     var normal = candidates[c].normal;
-    var radius = next_radius(params.points + c);
+    var radius = bitcast<f32>(next_radii[params.points + c]);
     var level = params.level;
     let record = record_of_candidate(c);
     if record != NONE {

@@ -10,7 +10,8 @@
 @group(0) @binding(5) var<storage, read> candidates: array<Candidate>;
 /// Lists of candidates around points and of conflicts.
 @group(0) @binding(6) var<storage, read> around: array<u32>;
-/// Bits of the radii at the next level: of the points, then of the candidates, by the insertion; then the same by this kernel.
+/// Bits of the radii at the next level: of the points, then of the candidates; then of the points by this kernel, which reads the
+/// first ones.
 @group(0) @binding(7) var<storage, read_write> next_radii: array<atomic<u32>>;
 @group(0) @binding(8) var<storage, read_write> arena: array<u32>;
 @group(0) @binding(9) var<storage, read_write> counters: Counters;

@@ -33,24 +33,24 @@ fn selection_radii(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     var farthest = 0u;
     var size = 0u;
     // Each side is between two members: the one before looks back on it.
-    var c = NONE;
+    var member = Member(NONE, vec3(0.0));
     var back = 0u;
     if slots.y > 0u {
-        c = stand_in(slots.x);
-        back = side_cover(stand_in(end - 1u), c);
+        member = member_of(slots.x);
+        back = side_cover(member_of(end - 1u), member);
     }
     for (var slot = slots.x; slot < end; slot++) {
-        let after = stand_in(select(slot + 1u, slots.x, slot + 1u == end));
-        let ahead = side_cover(c, after);
-        if c != NONE {
-            let radius = cover(candidates[c].place.xyz - points[p].position);
+        let after = member_of(select(slot + 1u, slots.x, slot + 1u == end));
+        let ahead = side_cover(member, after);
+        if member.id != NONE {
+            let radius = cover(member.place - points[p].position);
             farthest = max(farthest, radius);
-            raise(c, max(radius, max(back, ahead)));
+            raise(member.id, max(radius, max(back, ahead)));
         }
-        members[slots.x + size] = c;
-        size += u32(c != NONE && !is_repeated(slot, c, slots));
+        members[slots.x + size] = member.id;
+        size += u32(member.id != NONE && !is_repeated(slot, member.id, slots));
         back = ahead;
-        c = after;
+        member = after;
     }
     atomicStore(&next_radii[p], select(farthest, bitcast<u32>(points[p].radius), farthest == 0u));
     fans[p].around = vec2(slots.x, size);
@@ -62,12 +62,23 @@ fn selection_radii(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     note_cut_loops(p);
 }
 
-/// What covers the side between two members that follow each other; 0 where there is none.
-fn side_cover(a: u32, b: u32) -> u32 {
-    if a == NONE || b == NONE {
-        return 0u;
+/// Who stands for the candidate of a slot, or NONE, and its place.
+struct Member {
+    id: u32,
+    place: vec3<f32>,
+}
+
+fn member_of(slot: u32) -> Member {
+    let id = stand_in(slot);
+    if id == NONE {
+        return Member(NONE, vec3(0.0));
     }
-    return cover(candidates[b].place.xyz - candidates[a].place.xyz);
+    return Member(id, candidates[id].place.xyz);
+}
+
+/// What covers the side between two members that follow each other; 0 where there is none.
+fn side_cover(a: Member, b: Member) -> u32 {
+    return select(cover(b.place - a.place), 0u, a.id == NONE || b.id == NONE);
 }
 
 /// Whether a member is in the fan in its own right, or for an earlier slot.

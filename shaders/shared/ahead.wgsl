@@ -32,7 +32,6 @@ fn cover_ring(p: u32, size: u32) {
     if size == 0u {
         return;
     }
-    let own = params.points + params.candidates;
     let center = points[p].position;
     let ends_here = is_on_curve(p);
     var farthest = 0u;
@@ -51,16 +50,17 @@ fn cover_ring(p: u32, size: u32) {
         let ahead = select(cover(offset_after - offset), 0u, is_open);
         let radius = cover(offset);
         farthest = max(farthest, radius);
-        raise(own + word(ID, member), max(radius, max(back, ahead)));
+        raise(word(ID, member), max(radius, max(back, ahead)));
         back = ahead;
         member = after;
         offset = offset_after;
     }
-    raise(own + p, farthest);
+    raise(p, farthest);
 }
 
-/// Raises a radius. Most are large enough: to look costs less than to write.
-fn raise(at: u32, radius: u32) {
+/// Raises the radius of a point or, after these, of a candidate. Most are large enough: to look costs less than to write.
+fn raise(id: u32, radius: u32) {
+    let at = select(id, id + params.points + params.candidates, id < params.points);
     if atomicLoad(&next_radii[at]) < radius {
         atomicMax(&next_radii[at], radius);
     }

@@ -28,8 +28,10 @@ fn the_next_level_is_that_of_the_reference() {
         let points = device.guarded("points", &records);
         let indices = device.buffer("indices", &summed);
         let (insertion, covers) = (&state.insertion, &state.covers);
-        let radii =
-            [&insertion.radii, &insertion.candidate_radii, &covers.radii, &covers.candidate_radii];
+        let larger = |(a, b): (&f32, &f32)| a.max(*b);
+        let of_candidates = insertion.candidate_radii.iter().zip(&covers.candidate_radii);
+        let of_candidates: Vec<f32> = of_candidates.map(larger).collect();
+        let radii = [&insertion.radii, &of_candidates, &covers.radii];
         let radii: Vec<f32> = radii.into_iter().flatten().copied().collect();
         let radii = device.buffer("radii", &radii);
         let found_parents = device.output::<[u32; 3]>("parents", parents.len());

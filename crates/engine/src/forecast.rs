@@ -188,7 +188,7 @@ impl Step {
             ("numbers of candidates", 1, slots),
             ("first candidates", 1, points.saturating_add(1)),
             ("candidates", size_of::<Candidate>() as u64 / WORD, candidates),
-            ("radii", 2, points.saturating_add(candidates)),
+            ("radii", 1, points.saturating_mul(2).saturating_add(candidates)),
             ("new indices", 1, candidates.saturating_add(1)),
         ];
         let select = [

@@ -19,7 +19,7 @@ impl Step<'_> {
         self.buffers.waiting.reserve(self.gpu, 2 * WORD * candidates)?;
         self.buffers.rounds.reserve(self.gpu, 2 * WORD)?;
         self.buffers.workgroups.reserve(self.gpu, 3 * WORD)?;
-        self.buffers.next_radii.reserve(self.gpu, 2 * WORD * (n + candidates))?;
+        self.buffers.next_radii.reserve(self.gpu, WORD * (2 * n + candidates))?;
         self.buffers.new_indices.reserve(self.gpu, WORD * (candidates + 1))?;
         self.scan.reserve(self.gpu, self.params.candidates + 1)?;
         loop {
@@ -88,7 +88,7 @@ impl Step<'_> {
         let b = &*self.buffers;
         let (points, candidates) = (self.params.points, self.params.candidates);
         let mut commands = self.commands();
-        commands.clear(&b.next_radii, 2 * (u64::from(points) + u64::from(candidates)));
+        commands.clear(&b.next_radii, 2 * u64::from(points) + u64::from(candidates));
         // Nobody waits any more.
         let links = [&b.candidates, &b.mirror_heads, &b.mirror_links, &b.waiting, &b.counters];
         let stand_in = self.kernels.get("selection_stand_in");

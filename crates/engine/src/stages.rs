@@ -539,7 +539,7 @@ impl Step<'_> {
     /// Returns the number of new points.
     pub(crate) async fn insertion(&mut self, starts: &[u32], left_over: u32) -> Result<u32, Error> {
         let (n, candidates) = (u64::from(self.params.points), u64::from(self.params.candidates));
-        self.buffers.next_radii.reserve(self.gpu, 2 * WORD * (n + candidates))?;
+        self.buffers.next_radii.reserve(self.gpu, WORD * (2 * n + candidates))?;
         self.buffers.new_indices.reserve(self.gpu, WORD * (candidates + 1))?;
         self.scan.reserve(self.gpu, self.params.candidates + 1)?;
         let largest = starts.windows(2).map(|bounds| bounds[1] - bounds[0]).max().unwrap_or(1);
@@ -569,7 +569,7 @@ impl Step<'_> {
         let Params { points, candidates, .. } = self.params;
         let mut commands = self.commands();
         commands.clear(&b.counters, words_of(&b.counters).into());
-        commands.clear(&b.next_radii, 2 * (u64::from(points) + u64::from(candidates)));
+        commands.clear(&b.next_radii, 2 * u64::from(points) + u64::from(candidates));
         let inputs = [&b.points, &b.fans, &b.of_slot, &b.candidates, &b.around, &b.class_members];
         let outputs = [&b.next_radii, &b.arena, &b.counters, &b.curves];
         let buffers = [&inputs[..], &outputs].concat();
