@@ -97,12 +97,13 @@ rim of the neck is eaten away; on the right with the boundary.""",
     (
         "Figure 11: sharp bends",
         """The paper shows holes at a sharp bend without the geodesic projection and without the curved angle. Here an ear of the armadillo, two
-sheets less than an input spacing apart, after two steps: with both, without the projection, without both, and the true surface. We see no
+sheets less than an input spacing apart, after two steps by the paper's selection, which
+asks for angles: with both, without the projection, without both, and the true surface. We see no
 holes, but more wrong normals without the projection (orange: backs). [algorithm.md](algorithm.md#geodesic-projection-and-curved-angle) has figures.""",
         [
-            "surfine refine data/points/armadillo-10000-uniform.ply -o both.ply --levels 2 -q",
-            "surfine refine data/points/armadillo-10000-uniform.ply -o fuzzy.ply --levels 2 -q --neighborhood fuzzy",
-            "surfine refine data/points/armadillo-10000-uniform.ply -o neither.ply --levels 2 -q --neighborhood fuzzy --plain-angle",
+            "surfine refine data/points/armadillo-10000-uniform.ply -o both.ply --levels 2 -q --without largest_first",
+            "surfine refine data/points/armadillo-10000-uniform.ply -o fuzzy.ply --levels 2 -q --without largest_first --neighborhood fuzzy",
+            "surfine refine data/points/armadillo-10000-uniform.ply -o neither.ply --levels 2 -q --without largest_first --neighborhood fuzzy --plain-angle",
             "surfine render both.ply fuzzy.ply neither.ply data/mesh/armadillo.ply -o figure-11.png --size 380x340"
             " --eye=-0.25,0.42,0.45 --target=-0.075,0.312,0.122 --caption 'both' --caption 'no projection'"
             " --caption 'neither' --caption 'true surface'",

@@ -85,7 +85,7 @@ pub struct Rules {
     /// New points on another sheet, with a normal turned by 90° or more, are neither new neighbours nor discard.
     pub own_side: bool,
     /// In the first step a radius counts as no more than 1.25 times the distance to the farthest neighbour when new
-    /// neighbours are sought.
+    /// neighbours are sought; without `largest_first`, which does not look at radii.
     pub first_radii: bool,
     /// In gaps of a ring from 100° on, members that the fuzzy planes removed come back if they are natural neighbours.
     pub natural_neighbors: bool,
@@ -106,7 +106,7 @@ pub struct Rules {
     /// A point belongs to a side of a crease only if its normal and its place fit.
     pub valid_sides: bool,
     /// In steps that keep the creases and boundaries as they are, the neighbours of a point along them bound its new
-    /// neighbourhood.
+    /// neighbourhood; without `largest_first`, which asks for no gaps.
     pub curve_bounds: bool,
     /// Creases and boundaries are split at the second, fourth, ... step instead of the first, third, ...
     pub even_steps: bool,
