@@ -28,10 +28,10 @@ const ORDER: u32 = 8u;
 const ROWS: u32 = 9u;
 /// Words of a row that is private.
 const CAPACITY: u32 = 40u;
+/// Members of most neighbourhoods: loops over these are unrolled.
+const MOST: u32 = 8u;
 
-// What becomes of a member. Doubtful ones may lie on another sheet.
-const KEPT: u32 = 0u;
-const REMOVED: u32 = 1u;
+/// Of members that may lie on another sheet.
 const DOUBTFUL: u32 = 2u;
 
 @compute @workgroup_size(64)
@@ -82,30 +82,6 @@ fn count_ball(size: u32) {
     if before + size < before {
         atomicAdd(&counters.ball_high, 1u);
     }
-}
-
-/// Sorts the members that are kept by angle, ties by index, and returns their number.
-fn sort_ring(members: u32) -> u32 {
-    var size = 0u;
-    for (var i = 0u; i < members; i++) {
-        if word(FATE, i) != KEPT {
-            continue;
-        }
-        let angle = number(ANGLE, i);
-        var at = size;
-        while at > 0u {
-            let before = word(ORDER, at - 1u);
-            let other = number(ANGLE, before);
-            if other < angle | (other == angle & word(ID, before) < word(ID, i)) {
-                break;
-            }
-            set_word(ORDER, at, before);
-            at -= 1u;
-        }
-        set_word(ORDER, at, i);
-        size += 1u;
-    }
-    return size;
 }
 
 /// Writes the ring. Too small a buffer is seen by the host in the counters, and the stage runs again.

@@ -23,17 +23,20 @@ override accurate: bool = true;
 /// Whether the lists hold N' alone, by the selection.
 override largest_first: bool = true;
 
-// Rows: old points by index, then candidates; a member's angle; its place on the tangent plane; the vector whose fuzzy plane is
-// tested; the members of the ring in order.
+// Rows: old points by index, then candidates; what became of a member; its angle; its place on the tangent plane; the vector whose
+// fuzzy plane is tested; the members of the ring in order.
 const ID: u32 = 0u;
-const ANGLE: u32 = 1u;
-const X: u32 = 2u;
-const Y: u32 = 3u;
-const OFFSET: u32 = 4u;
-const ORDER: u32 = 7u;
-const ROWS: u32 = 8u;
+const FATE: u32 = 1u;
+const ANGLE: u32 = 2u;
+const X: u32 = 3u;
+const Y: u32 = 4u;
+const OFFSET: u32 = 5u;
+const ORDER: u32 = 8u;
+const ROWS: u32 = 9u;
 /// As conflicts.wgsl counts on.
 const CAPACITY: u32 = 48u;
+/// Members of most neighbourhoods: loops over these are unrolled.
+const MOST: u32 = 12u;
 
 struct Around {
     center: vec3<f32>,
@@ -54,15 +57,11 @@ fn next_ring(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
         return;
     }
     let members = gather(p);
-    var ring = 0u;
     for (var i = 0u; i < members; i++) {
-        if !is_behind(i, members) {
-            set_number(ANGLE, i, direction_angle(number(Y, i), number(X, i)));
-            sort_in(i, ring);
-            ring += 1u;
-        }
+        set_word(FATE, i, select(KEPT, REMOVED, is_behind(i, members)));
+        set_number(ANGLE, i, direction_angle(number(Y, i), number(X, i)));
     }
-    cover_ring(p, ring);
+    cover_ring(p, sort_ring(members));
     note_cut_loops(p);
 }
 

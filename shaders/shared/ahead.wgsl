@@ -6,22 +6,6 @@
 /// Radii exceed the distances they must cover by this factor, so that rounding can't lose the farthest ring.
 const COVER: f32 = 1.02;
 
-/// Puts a member into its place in a ring of that size, by angle, then by index.
-fn sort_in(member: u32, size: u32) {
-    let angle = number(ANGLE, member);
-    var at = size;
-    while at > 0u {
-        let before = word(ORDER, at - 1u);
-        let other = number(ANGLE, before);
-        if other < angle || (other == angle && word(ID, before) < word(ID, member)) {
-            break;
-        }
-        set_word(ORDER, at, before);
-        at -= 1u;
-    }
-    set_word(ORDER, at, member);
-}
-
 /// Bits of the radius that covers a distance: they are ordered as radii are.
 fn cover(distance: vec3<f32>) -> u32 {
     return bitcast<u32>(COVER * sqrt(dot3(distance, distance)));

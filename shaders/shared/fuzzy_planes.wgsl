@@ -9,28 +9,43 @@ const WORST_BADNESS: f32 = 1.001;
 ///
 /// The maximum is taken over signed squares of sin α_ij, which order the same and need no root per pair. An empty set has -2.
 fn is_behind(i: u32, members: u32) -> bool {
-    let x = number(X, i);
-    let y = number(Y, i);
-    let own = plane_vector(i);
-    var successor = -2.0;
-    var predecessor = -2.0;
-    for (var j = 0u; j < members; j++) {
-        let other = plane_vector(j);
-        let c = own - other;
-        let product = dot3(other, other) * dot3(c, c);
-        let along = dot3(other, c);
-        let sin_squared = along * abs(along) / product;
-        let takes_part = i != j & !is_left_out(j) & product != 0.0;
-        // An exactly collinear point counts as successor.
-        let succeeds = x * number(Y, j) - y * number(X, j) >= 0.0;
-        successor = select(successor, sin_squared, takes_part & succeeds & sin_squared > successor);
-        predecessor = select(predecessor, sin_squared, takes_part & !succeeds & sin_squared > predecessor);
+    let own = OnPlane(number(X, i), number(Y, i), plane_vector(i));
+    var sines = vec2(-2.0);
+    for (var j = 0u; j < UNROLLED; j++) {
+        sines = with_plane(sines, own, j, i != j & j < members);
+    }
+    for (var j = UNROLLED; j < members; j++) {
+        sines = with_plane(sines, own, j, i != j);
         // Both only rise. Among few it costs more to look than to go on.
-        if IN_ARENA && plane_badness(successor) + plane_badness(predecessor) > WORST_BADNESS {
+        if IN_ARENA && is_worst(sines) {
             return true;
         }
     }
-    return plane_badness(successor) + plane_badness(predecessor) > WORST_BADNESS;
+    return is_worst(sines);
+}
+
+/// A member on the tangent plane, and its vector.
+struct OnPlane {
+    x: f32,
+    y: f32,
+    vector: vec3<f32>,
+}
+
+/// The squares of the largest sines to successors and predecessors, after that to member j, if it is one.
+fn with_plane(sines: vec2<f32>, own: OnPlane, j: u32, is_member: bool) -> vec2<f32> {
+    let other = plane_vector(j);
+    let c = own.vector - other;
+    let product = dot3(other, other) * dot3(c, c);
+    let along = dot3(other, c);
+    let squared = along * abs(along) / product;
+    let takes_part = is_member & !is_left_out(j) & product != 0.0;
+    // An exactly collinear point counts as successor.
+    let succeeds = own.x * number(Y, j) - own.y * number(X, j) >= 0.0;
+    return select(sines, vec2(squared), vec2(takes_part) & vec2(succeeds, !succeeds) & vec2(squared) > sines);
+}
+
+fn is_worst(sines: vec2<f32>) -> bool {
+    return plane_badness(sines.x) + plane_badness(sines.y) > WORST_BADNESS;
 }
 
 /// The vector whose fuzzy plane is tested: q' - p for the accurate neighbourhood, p_i - p for the fuzzy one.
