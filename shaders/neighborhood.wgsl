@@ -16,16 +16,16 @@
 /// A rule beyond the paper: see `Rules` in crates/points/src/params.rs.
 override natural_neighbors: bool = true;
 
-// Rows: a member's index, what became of it, its angle, its place on the tangent plane, the vector whose fuzzy plane is
-// tested, and the members of the ring in order.
+// Rows: a member's index, what became of it, its angle, its place on the tangent plane, its height over it (of the fuzzy
+// neighbourhood), and the members of the ring in order.
 const ID: u32 = 0u;
 const FATE: u32 = 1u;
 const ANGLE: u32 = 2u;
 const X: u32 = 3u;
 const Y: u32 = 4u;
-const OFFSET: u32 = 5u;
-const ORDER: u32 = 8u;
-const ROWS: u32 = 9u;
+const HEIGHT: u32 = 5u;
+const ORDER: u32 = 6u;
+const ROWS: u32 = 7u;
 /// Words of a row that is private.
 const CAPACITY: u32 = 40u;
 /// Members of most neighbourhoods: loops over these are unrolled.

@@ -23,16 +23,16 @@ override accurate: bool = true;
 /// Whether the lists hold N' alone, by the selection.
 override largest_first: bool = true;
 
-// Rows: old points by index, then candidates; what became of a member; its angle; its place on the tangent plane; the vector whose
-// fuzzy plane is tested; the members of the ring in order.
+// Rows: old points by index, then candidates; what became of a member; its angle; its place on the tangent plane; its
+// height over it (of the fuzzy neighbourhood); the members of the ring in order.
 const ID: u32 = 0u;
 const FATE: u32 = 1u;
 const ANGLE: u32 = 2u;
 const X: u32 = 3u;
 const Y: u32 = 4u;
-const OFFSET: u32 = 5u;
-const ORDER: u32 = 8u;
-const ROWS: u32 = 9u;
+const HEIGHT: u32 = 5u;
+const ORDER: u32 = 6u;
+const ROWS: u32 = 7u;
 /// As conflicts.wgsl counts on.
 const CAPACITY: u32 = 48u;
 /// Members of most neighbourhoods: loops over these are unrolled.
@@ -124,7 +124,7 @@ fn add(all: ptr<function, Around>, id: u32, d: vec3<f32>, normal: vec3<f32>) {
     set_number(X, i, x * scale);
     set_number(Y, i, y * scale);
     if !accurate {
-        set_vector(OFFSET, i, d * inverse);
+        set_number(HEIGHT, i, dot3(d, (*all).normal) * inverse);
     }
     (*all).size += u32(is_apart(d2, (*all).radius) & q2 > 1e-12 * d2);
 }

@@ -59,7 +59,7 @@ fn keep_consistent(p: u32, size: u32) -> u32 {
         set_number(X, members, x * scale);
         set_number(Y, members, y * scale);
         if !accurate {
-            set_vector(OFFSET, members, d * inverse);
+            set_number(HEIGHT, members, dot3(d, center.normal) * inverse);
         }
         members += u32(stays);
     }

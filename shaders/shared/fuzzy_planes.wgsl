@@ -1,6 +1,6 @@
 // Fuzzy planes (section 4.1, eq. 8). Twins: `worst_sines` and `badness` in crates/reference/src/ball.rs
 //
-// Expects `accurate`, `is_left_out` and rows X, Y and OFFSET of the members, as neighborhood.wgsl has them.
+// Expects `accurate`, `is_left_out` and rows X, Y and HEIGHT of the members, as neighborhood.wgsl has them.
 
 /// Largest badness of a neighbour: 1, and a margin because regular grids give exactly that.
 const WORST_BADNESS: f32 = 1.001;
@@ -48,12 +48,13 @@ fn is_worst(sines: vec2<f32>) -> bool {
     return plane_badness(sines.x) + plane_badness(sines.y) > WORST_BADNESS;
 }
 
-/// The vector whose fuzzy plane is tested: q' - p for the accurate neighbourhood, p_i - p for the fuzzy one.
+/// The vector whose fuzzy plane is tested, in the frame of the tangent plane: q' - p for the accurate neighbourhood, p_i - p for the
+/// fuzzy one.
 fn plane_vector(i: u32) -> vec3<f32> {
     if accurate {
         return vec3(number(X, i), number(Y, i), 0.0);
     }
-    return vector(OFFSET, i);
+    return vec3(number(X, i), number(Y, i), number(HEIGHT, i));
 }
 
 /// w_ij from the signed square of sin α_ij; 0 for an empty set.

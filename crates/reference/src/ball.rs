@@ -128,9 +128,8 @@ pub(crate) struct Members {
     x: Vec<f32>,
     y: Vec<f32>,
     angle: Vec<f32>,
-    /// The vectors whose fuzzy planes are tested, for the fuzzy neighbourhood: `p_i - p`. For the accurate one they are
-    /// `q'_i - p`, which is (x, y).
-    offset: [Vec<f32>; 3],
+    /// Heights over the tangent planes, for the fuzzy neighbourhood.
+    height: Vec<f32>,
     pub(crate) verdicts: Vec<Verdict>,
     successor: Vec<f32>,
     predecessor: Vec<f32>,
@@ -169,8 +168,8 @@ impl Members {
         self.ids.resize(room, 0);
         self.verdicts.resize(room, OUT);
         self.pairs.resize(room);
-        let columns = [&mut self.x, &mut self.y, &mut self.angle];
-        columns.into_iter().chain(&mut self.offset).for_each(|column| column.resize(room, 0.0));
+        let columns = [&mut self.x, &mut self.y, &mut self.height, &mut self.angle];
+        columns.into_iter().for_each(|column| column.resize(room, 0.0));
     }
 
     /// Adds a member to the neighbourhood that is being made, if it is wanted; there must be room. It is written in any case and
@@ -203,26 +202,20 @@ impl Members {
 
     /// Finds the places of all on the tangent planes. Those exactly along the normal have no direction there: they are out.
     pub(crate) fn project(&mut self, fuzzy: bool) {
-        let Self { pairs, x, y, angle, offset, verdicts, .. } = self;
+        let Self { pairs, x, y, height, angle, verdicts, .. } = self;
         let project = if fuzzy { project::<true> } else { project::<false> };
         let blocks = self.len.div_ceil(BLOCK);
         for i in 0..blocks {
-            let (x, y) = (&mut x.as_chunks_mut().0[i], &mut y.as_chunks_mut().0[i]);
-            project(pairs.block(i), x, y, &mut verdicts.as_chunks_mut().0[i]);
+            let [x, y, height] = [&mut *x, y, height].map(|column| &mut column.as_chunks_mut().0[i]);
+            project(pairs.block(i), x, y, height, &mut verdicts.as_chunks_mut().0[i]);
             direction_angles(y, x, &mut angle[i * BLOCK..(i + 1) * BLOCK]);
-        }
-        if fuzzy {
-            for (offset, d) in offset.iter_mut().zip(&pairs.d) {
-                let scaled = d.iter().zip(&pairs.inverse_radius).map(|(d, inverse)| d * inverse);
-                offset[..blocks * BLOCK].iter_mut().zip(scaled).for_each(|(o, v)| *o = v);
-            }
         }
     }
 
     /// The members of a neighbourhood, after their badness `w_i` (eq. 8) was found.
     pub(crate) fn ball(&mut self, own: Range<usize>, fuzzy: bool, sin_theta_f: f32) -> Ball<'_> {
         let all = padded(&own);
-        let directions = [&self.x[all.clone()], &self.y[all.clone()]];
+        let [x, y, height] = [&self.x, &self.y, &self.height].map(|column| &column[all.clone()]);
         let verdicts = &self.verdicts[own.clone()];
         let (successor, predecessor) = (&mut self.successor, &mut self.predecessor);
         for sines in [&mut *successor, predecessor] {
@@ -230,13 +223,8 @@ impl Members {
             // Less than any square of a sine.
             sines.resize(all.len(), -2.0);
         }
-        if fuzzy {
-            let offsets = self.offset.each_ref().map(|column| &column[all.clone()]);
-            worst_sines::<true>(offsets, directions, verdicts, successor, predecessor);
-        } else {
-            let [x, y] = directions;
-            worst_sines::<false>([x, y, &[]], directions, verdicts, successor, predecessor);
-        }
+        let worst_sines = if fuzzy { worst_sines::<true> } else { worst_sines::<false> };
+        worst_sines(x, y, height, verdicts, successor, predecessor);
         badness(successor, predecessor, sin_theta_f);
         Ball {
             ids: &self.ids[own.clone()],
@@ -342,6 +330,7 @@ vectorized! {
         pairs: Block<'_>,
         xs: &mut Column,
         ys: &mut Column,
+        heights: &mut Column,
         verdicts: &mut [Verdict; BLOCK],
     ) {
         for i in 0..BLOCK {
@@ -355,27 +344,30 @@ vectorized! {
                 (geodesic_distance(d, normal, other) * pairs.inverse_radius[i]) / q2.sqrt()
             };
             (xs[i], ys[i]) = (x * scale, y * scale);
+            if FUZZY {
+                heights[i] = d.dot(normal) * scale;
+            }
         }
     }
 
     /// The largest signed squares of `sin α_ij` for every member `i`, over successors and predecessors. They order like the sines
-    /// and need no root per pair.
-    fn worst_sines[const SPATIAL: bool] [SPATIAL](
-        offsets: [&[f32]; 3],
-        directions: [&[f32]; 2],
+    /// and need no root per pair. The vectors whose fuzzy planes are tested are (x, y), `q'_i - p`, for the accurate neighbourhood, and
+    /// (x, y, height), `p_i - p`, for the fuzzy one.
+    fn worst_sines[const FUZZY: bool] [FUZZY](
+        x: &[f32],
+        y: &[f32],
+        height: &[f32],
         verdicts: &[Verdict],
         successor: &mut [f32],
         predecessor: &mut [f32],
     ) {
-        let ([ox, oy, oz], [x, y]) = (offsets, directions);
         let count = x.len();
-        let (ox, oy, oz) = (&ox[..count], &oy[..count], if SPATIAL { &oz[..count] } else { oz });
-        let dot = |a: Vec3, b: Vec3| if SPATIAL { a.dot(b) } else { a.x * b.x + a.y * b.y };
-        let at = |i: usize| Vec3::new(ox[i], oy[i], if SPATIAL { oz[i] } else { 0.0 });
-        let (y, successor, predecessor) =
-            (&y[..count], &mut successor[..count], &mut predecessor[..count]);
+        let dot = |a: Vec3, b: Vec3| if FUZZY { a.dot(b) } else { a.x * b.x + a.y * b.y };
+        let (y, height) = (&y[..count], &height[..count]);
+        let at = |i: usize| Vec3::new(x[i], y[i], if FUZZY { height[i] } else { 0.0 });
+        let (successor, predecessor) = (&mut successor[..count], &mut predecessor[..count]);
         for j in (0..verdicts.len()).filter(|&j| verdicts[j] == SURE) {
-            let (other, xj, yj) = (at(j), x[j], y[j]);
+            let other = at(j);
             let length = dot(other, other);
             for i in 0..count {
                 let c = at(i) - other;
@@ -385,7 +377,7 @@ vectorized! {
                 // The member itself, and others in its place, count for nothing.
                 let sine = unless(product == 0.0, sine);
                 // An exactly collinear point counts as successor.
-                let succeeds = x[i] * yj - y[i] * xj >= 0.0;
+                let succeeds = x[i] * other.y - y[i] * other.x >= 0.0;
                 let (after, before) = (unless(!succeeds, sine), unless(succeeds, sine));
                 successor[i] = if after > successor[i] { after } else { successor[i] };
                 predecessor[i] = if before > predecessor[i] { before } else { predecessor[i] };
