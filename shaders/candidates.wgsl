@@ -7,10 +7,10 @@
 @group(0) @binding(5) var<storage, read_write> counters: Counters;
 @group(0) @binding(6) var<storage, read> curves: array<u32>;
 
-/// Whether the simplifications of section 7 are made.
-override simplified: bool = false;
 /// A rule beyond the paper: see `Rules` in crates/points/src/params.rs.
 override largest_first: bool = true;
+/// Whether the simplifications of section 7 are made.
+override simplified: bool = false;
 
 const THIRD: f32 = 1.0 / 3.0;
 
@@ -55,29 +55,14 @@ fn add_curve_point(c: u32) {
 /// Writes the candidate of a triangle; false if there is none.
 fn add_candidate(c: u32) -> bool {
     let triangle = triangle_of(all[c].corners);
-    var position: vec3<f32>;
-    if simplified {
-        position = center_of_gravity(triangle);
-    } else {
-        position = displaced_center(triangle);
-    }
+    let position = displaced_center(triangle);
     let rho = reach(triangle, position);
     if rho == 0.0 || is_steep(triangle, rho) {
         return false;
     }
-    var normal: vec3<f32>;
-    if simplified {
-        // The triangle must have an area; its curved normal is taken when it is inserted.
-        let cross = flat_cross(triangle, rho);
-        if dot3(cross, cross) <= FLAT {
-            return false;
-        }
-        normal = unit(cross);
-    } else {
-        normal = new_normal(triangle, rho);
-        if dot3(normal, normal) == 0.0 {
-            return false;
-        }
+    let normal = new_normal(triangle, rho);
+    if dot3(normal, normal) == 0.0 {
+        return false;
     }
     all[c].place = vec4(position, rho);
     all[c].normal = normal;
@@ -86,9 +71,10 @@ fn add_candidate(c: u32) -> bool {
     return true;
 }
 
-/// The size of a triangle. Where neighbours are unevenly far, it counts as large as the neighbourhoods of its corners.
+/// The size of a triangle. Where neighbours are unevenly far, it counts as large as the neighbourhoods of its corners, but if
+/// simplified.
 fn size_of(corners: vec3<u32>, rho: f32) -> f32 {
-    if !largest_first {
+    if !largest_first || simplified {
         return rho;
     }
     let near = fans[corners.x].near + fans[corners.y].near + fans[corners.z].near;

@@ -14,6 +14,8 @@
 /// Rules beyond the paper: see `Rules` in crates/points/src/params.rs.
 override first_radii: bool = true;
 override largest_first: bool = true;
+/// Whether the simplifications of section 7 are made.
+override simplified: bool = false;
 
 /// Radii exceed the distance to the farthest natural neighbour by this factor.
 const NATURAL: f32 = 1.25;
@@ -69,11 +71,14 @@ fn slot_of(p: u32, begin: u32, end: u32) -> u32 {
 
 /// λ1 r. The radii of the input may be too large, and would take far points for new neighbours: in the first step they
 /// count as no more than NATURAL times the distance to the farthest neighbour. A selection among all candidates has no use for
-/// radii, and asks for that distance.
+/// radii, and asks for that distance; if simplified for nothing.
 fn near_radius(p: u32, block: vec2<u32>) -> f32 {
     let radius = points[p].radius;
     if !largest_first && (!first_radii || params.level > 1u || block.y == 0u) {
         return params.lambda1 * radius;
+    }
+    if largest_first && simplified {
+        return 0.0;
     }
     var farthest = 0.0;
     for (var slot = block.x; slot < block.x + block.y; slot++) {

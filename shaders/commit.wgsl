@@ -12,9 +12,6 @@
 @group(0) @binding(6) var<storage, read_write> parents: array<u32>;
 @group(0) @binding(7) var<storage, read> curves: array<u32>;
 
-/// Whether the simplifications of section 7 are made.
-override simplified: bool = false;
-
 @compute @workgroup_size(64)
 fn commit(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let index = linear_index(id, groups);
@@ -28,25 +25,14 @@ fn commit(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
 }
 
 fn append_point(c: u32, rank: u32) {
-    var position = candidates[c].place.xyz;
-    var normal = candidates[c].normal;
     var radius = bitcast<f32>(next_radii[params.points + c]);
     var level = params.level;
     let record = record_of_candidate(c);
-    if record != NONE {
+    if with_curves && record != NONE {
         radius = max(radius, record_radius(record));
         level |= (record + 1u) << LEVEL_BITS;
-    } else if simplified {
-        // Section 7, simplification 4: the displacement is computed for inserted points only.
-        let triangle = triangle_of(candidates[c].corners);
-        position = displaced_center(triangle);
-        let curved = new_normal(triangle, candidates[c].place.w);
-        // Else it stays that of the flat triangle.
-        if dot3(curved, curved) > 0.0 {
-            normal = curved;
-        }
     }
-    points[params.points + rank] = Point(position, radius, normal, level);
+    points[params.points + rank] = Point(candidates[c].place.xyz, radius, candidates[c].normal, level);
     let corners = candidates[c].corners;
     let first = 3u * (dispatch.x + rank);
     parents[first] = corners.x;

@@ -81,15 +81,6 @@ fn is_seen(center: Seen, near_curves: bool, sphere: f32, x: u32) -> bool {
     return sees(center, near_curves, sphere, other);
 }
 
-/// Whether a candidate is decided before another one: points on curves are before all, then comes the larger one, then that of
-/// the higher hashed index.
-fn precedes(a: u32, b: u32) -> bool {
-    let size_a = candidates[a].size;
-    let size_b = candidates[b].size;
-    let is_larger = size_a > size_b || (size_a == size_b && scramble(a) > scramble(b));
-    return a != b && b < params.triangles && (a >= params.triangles || is_larger);
-}
-
 /// Too small a buffer is seen by the host in the counters, and the stage runs again.
 fn add_link(x: u32, h: u32) {
     let link = atomicAdd(&counters.mirrored, 1u);

@@ -68,10 +68,6 @@ fn control_polygon(t: Triangle) -> ControlPolygon {
     );
 }
 
-fn center_of_gravity(t: Triangle) -> vec3<f32> {
-    return t.a.position + ((t.b.position - t.a.position) + (t.c.position - t.a.position)) * 0.33333334;
-}
-
 /// The centre of gravity displaced by the smoothing operator φ (eq. 3).
 fn displaced_center(t: Triangle) -> vec3<f32> {
     let p = control_polygon(t);

@@ -12,7 +12,7 @@ fn the_next_level_is_that_of_the_reference() {
         let (n, count) = (step.level.len(), step.state.candidates.len());
         let state = &step.state;
         let mut expected = step.level.clone();
-        let parents = commit(&mut expected, state, &step.refine);
+        let parents = commit(&mut expected, state);
 
         let candidates = device.buffer("candidates", &step.decided());
         let indices = device.output::<u32>("indices", count + 1);

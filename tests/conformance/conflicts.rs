@@ -24,7 +24,7 @@ impl ConflictBuffers {
         let fans = device.guarded("fans", &fans);
         let of_slot = device.buffer("of slot", &step.state.candidates.of_slot);
         let candidates = device.buffer("candidates", &step.candidates());
-        let (starts, places) = grid_words(&step.state.candidate_grid);
+        let (starts, places) = grid_words(step.candidate_grid());
         let (grid, places) = (device.buffer("grid", &starts), device.buffer("places", &places));
         let entries = step.params().around_entries as usize;
         let around = device.output::<u32>("around", entries);

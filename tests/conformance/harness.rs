@@ -159,7 +159,7 @@ fn all_steps() -> Vec<Step> {
                 let (state, _) = run_level(&level, &refine, Order::Together, &mut |_| ());
                 let name = format!("{} {} step {number}", cloud.name, describe(&refine));
                 let mut next = level.clone();
-                commit(&mut next, &state, &refine);
+                commit(&mut next, &state);
                 steps.push(Step { name, level, refine: refine.clone(), state });
                 level = next;
             }
@@ -273,6 +273,27 @@ impl Step {
             size: c.sizes[i],
         };
         (0..c.len()).map(candidate).collect()
+    }
+
+    /// The candidates by cell.
+    pub(crate) fn candidate_grid(&self) -> &Grid {
+        self.state.candidate_grid.as_ref().expect("the variant sorts its candidates into cells")
+    }
+
+    /// The first of the candidates that belong to each point, and one more: these are at home in the first fan that has them.
+    pub(crate) fn first_candidates(&self) -> Vec<u32> {
+        let c = &self.state.candidates;
+        let has =
+            |p: u32, i: usize| c.of_slot[self.state.rings.slots(p as usize)].contains(&(i as u32));
+        let mut firsts = vec![0; self.level.len() + 1];
+        for (i, corners) in c.corners[..c.first_on_curve].iter().enumerate() {
+            let home = corners.iter().find(|&&p| has(p, i)).expect("it is in a fan");
+            firsts[*home as usize + 1] += 1;
+        }
+        for p in 0..self.level.len() {
+            firsts[p + 1] += firsts[p];
+        }
+        firsts
     }
 
     /// The candidates as all classes leave them.

@@ -1,6 +1,7 @@
 //! The selection of new points, the largest triangles first, as dispatches of its kernels.
 
 use crate::Error;
+use crate::commands::Commands;
 use crate::records::Counters;
 use crate::stages::{CANDIDATE_STRIDE, ROUNDS, Step, WORD, words_of};
 use std::ops::Range;
@@ -13,7 +14,9 @@ impl Step<'_> {
     /// kernels leave points over.
     pub(crate) async fn selection(&mut self) -> Result<(u32, u32), Error> {
         let (n, candidates) = (u64::from(self.params.points), u64::from(self.params.candidates));
-        self.sort_into_grid(self.params.candidates, CANDIDATE_STRIDE).await?;
+        if !self.asks_contested_alone {
+            self.sort_into_grid(self.params.candidates, CANDIDATE_STRIDE).await?;
+        }
         self.buffers.mirror_heads.reserve(self.gpu, WORD * candidates)?;
         self.buffers.mirror_links.reserve(self.gpu, 2 * WORD * u64::from(LINKS) * n)?;
         self.buffers.waiting.reserve(self.gpu, 2 * WORD * candidates)?;
@@ -24,8 +27,14 @@ impl Step<'_> {
         self.scan.reserve(self.gpu, self.params.candidates + 1)?;
         loop {
             self.params.mirror_links = words_of(&self.buffers.mirror_links) / 2;
-            self.record_overlaps().await?;
-            let (counters, mut left) = self.run_selection(0..ROUNDS).await?;
+            // Those that are not contested need no round.
+            let first = u32::from(self.asks_contested_alone);
+            if self.asks_contested_alone {
+                self.record_contested().await?;
+            } else {
+                self.record_overlaps().await?;
+            }
+            let (counters, mut left) = self.run_selection(first..ROUNDS).await?;
             if counters.mirrored > self.params.mirror_links {
                 let bytes = 2 * WORD * u64::from(counters.mirrored);
                 self.buffers.mirror_links.reserve(self.gpu, bytes)?;
@@ -59,6 +68,34 @@ impl Step<'_> {
         commands.finish().await
     }
 
+    /// Records who discards contested candidates. These wait for round 1.
+    async fn record_contested(&self) -> Result<(), Error> {
+        let b = &*self.buffers;
+        let candidates = self.params.candidates;
+        let mut commands = self.commands();
+        commands.clear(&b.counters, words_of(&b.counters).into());
+        commands.clear(&b.mirror_heads, candidates.into());
+        commands.clear(&b.rounds, 2);
+        let (graph, list) = ([&b.candidates, &b.fans, &b.of_slot], [&b.waiting, &b.rounds]);
+        let kernel = self.kernels.get("selection_contested");
+        let buffers = [&graph[..], &[&b.first_candidates], &list, &[&b.counters]].concat();
+        commands.run(kernel, &buffers, [0; 4], candidates).await;
+        self.record_round(&mut commands, 1).await;
+        let outputs = [&b.mirror_heads, &b.mirror_links, &b.counters];
+        let links = self.kernels.get("selection_links");
+        let links = commands.bind(links, &[&graph[..], &list, &outputs].concat());
+        commands.dispatch_indirect(&links, [0; 4], &b.workgroups, 0).await;
+        commands.finish().await
+    }
+
+    /// Prepares a round.
+    async fn record_round(&self, commands: &mut Commands<'_>, round: u32) {
+        let b = &*self.buffers;
+        let row = self.gpu.device.limits().max_compute_workgroups_per_dimension;
+        let buffers = [&b.rounds, &b.workgroups];
+        commands.run(self.kernels.get("selection_round"), &buffers, [round, row, 0, 0], 1).await;
+    }
+
     /// Some rounds. Returns the counters and how many candidates are left.
     async fn run_selection(&self, rounds: Range<u32>) -> Result<(Counters, u32), Error> {
         let b = &*self.buffers;
@@ -66,15 +103,12 @@ impl Step<'_> {
         let graph = [&b.candidates, &b.mirror_heads, &b.mirror_links];
         let state = [&b.waiting, &b.rounds, &b.counters];
         let round = commands.bind(self.kernels.get("selection"), &[&graph[..], &state].concat());
-        let prepare = [&b.rounds, &b.workgroups];
-        let prepare = commands.bind(self.kernels.get("selection_round"), &prepare);
-        let row = self.gpu.device.limits().max_compute_workgroups_per_dimension;
         for i in rounds.clone() {
             if i == 0 {
                 commands.dispatch(&round, [0; 4], self.params.candidates).await;
                 continue;
             }
-            commands.dispatch(&prepare, [i, row, 0, 0], 1).await;
+            self.record_round(&mut commands, i).await;
             // Few wait.
             commands.dispatch_indirect(&round, [i, 0, 0, 0], &b.workgroups, 0).await;
         }

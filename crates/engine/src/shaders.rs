@@ -124,6 +124,7 @@ pub const SHADERS: &[Shader] = &[
     shader!("candidates", "math", "pn_triangle", "corners", "new_normal", "curves"),
     shader!(
         "selection_overlaps",
+        "precedence",
         "priority",
         "cells",
         "ball_walk",
@@ -135,6 +136,8 @@ pub const SHADERS: &[Shader] = &[
         "visible",
         "cut_loops"
     ),
+    shader!("selection_contested", "cut_loops"),
+    shader!("selection_links", "precedence", "priority", "math", "same_side", "cut_loops"),
     shader!("selection_round"),
     shader!("selection", "cut_loops"),
     shader!("selection_stand_in", "math", "cut_loops"),
@@ -152,5 +155,5 @@ pub const SHADERS: &[Shader] = &[
     NEXT_RING[0],
     NEXT_RING[1],
     shader!("commit_count"),
-    shader!("commit", "math", "pn_triangle", "corners", "new_normal", "curves"),
+    shader!("commit", "math", "curves"),
 ];

@@ -141,6 +141,8 @@ pub(crate) struct Step<'a> {
     pub(crate) sizing: &'a Sizing,
     /// Whether new points are selected among all candidates.
     pub(crate) largest_first: bool,
+    /// Whether contested candidates alone are asked who discards them.
+    pub(crate) asks_contested_alone: bool,
     /// Whether radii cover the next level's rings.
     pub(crate) next_ring: bool,
     pub(crate) params: Params,

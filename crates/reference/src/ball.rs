@@ -206,7 +206,8 @@ impl Members {
         let project = if fuzzy { project::<true> } else { project::<false> };
         let blocks = self.len.div_ceil(BLOCK);
         for i in 0..blocks {
-            let [x, y, height] = [&mut *x, y, height].map(|column| &mut column.as_chunks_mut().0[i]);
+            let [x, y, height] =
+                [&mut *x, y, height].map(|column| &mut column.as_chunks_mut().0[i]);
             project(pairs.block(i), x, y, height, &mut verdicts.as_chunks_mut().0[i]);
             direction_angles(y, x, &mut angle[i * BLOCK..(i + 1) * BLOCK]);
         }

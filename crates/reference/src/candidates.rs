@@ -14,7 +14,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 use std::ops::Range;
 use surfine_features::Record;
-use surfine_points::{RefineParams, Rules};
+use surfine_points::RefineParams;
 
 /// A fan triangle needs a gap below π(1 - 1e-4) radians: at π the fan has no triangle there.
 pub const WIDEST_GAP: f32 = surfine_features::STRAIGHT;
@@ -31,9 +31,9 @@ const THIRD: f32 = 1.0 / 3.0;
 /// which are inserted in any case.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Candidates {
-    /// Position during this step: displaced by φ, or the centre of gravity if `simplified`.
+    /// Position, displaced by φ.
     pub positions: Vec<Vec3>,
-    /// Normal: of the curved triangle, or of the flat one if `simplified`.
+    /// Normal of the curved triangle.
     pub normals: Vec<Vec3>,
     /// `ρ`: largest distance to the three corners, or -1 where the triangle has no candidate.
     pub rho: Vec<f32>,
@@ -42,10 +42,10 @@ pub struct Candidates {
     /// The candidate of each slot; [`NO_POINT`] for slots without a triangle.
     pub of_slot: Vec<u32>,
     /// Their sizes, by which the selection goes: ρ, or λ1 times the distance from the corners to their farthest neighbours in the
-    /// mean, whichever is larger; by the paper's selection ρ. 0 where there is no candidate.
+    /// mean, whichever is larger; by the paper's selection, or if `simplified`, ρ. 0 where there is no candidate.
     pub sizes: Vec<f32>,
     /// Of each point: within this distance new points are new neighbours (section 5). For a selection among all candidates λ1
-    /// times the distance to the farthest neighbour.
+    /// times the distance to the farthest neighbour; 0 if `simplified`.
     pub near: Vec<f32>,
     /// The first of the new points on creases and boundaries.
     pub first_on_curve: usize,
@@ -114,11 +114,8 @@ pub fn candidates(level: &Level, rings: &Rings, params: &RefineParams) -> Candid
 impl Candidates {
     /// Finds position, normal, ρ and size of the candidates of all triangles.
     fn find_all(&mut self, level: &Level, params: &RefineParams) {
-        let formula = match (params.simplified, params.rules.sliver_normals) {
-            (true, _) => triangles::simplified_points,
-            (false, true) => triangles::new_points,
-            (false, false) => triangles::literal_points,
-        };
+        let safe = params.rules.sliver_normals;
+        let formula = if safe { triangles::new_points } else { triangles::literal_points };
         let chunks = (self.positions.par_chunks_mut(BLOCK))
             .zip(self.normals.par_chunks_mut(BLOCK))
             .zip(self.rho.par_chunks_mut(BLOCK))
@@ -135,7 +132,7 @@ impl Candidates {
             }
             rho.copy_from_slice(&new.rho[..corners.len()]);
             for ((size, &rho), corners) in sizes.iter_mut().zip(&*rho).zip(corners) {
-                *size = size_of(near, *corners, rho, params.rules);
+                *size = size_of(near, *corners, rho, params);
             }
         });
     }
@@ -289,10 +286,11 @@ fn place_of(rings: &Rings, slots: Range<usize>, id: u32) -> Option<usize> {
     }
 }
 
-/// The size of a triangle. Where neighbours are unevenly far, it counts as large as the neighbourhoods of its corners.
+/// The size of a triangle. Where neighbours are unevenly far, it counts as large as the neighbourhoods of its corners, but if
+/// `simplified`.
 #[inline(always)]
-fn size_of(near: &[f32], corners: [u32; 3], rho: f32, rules: Rules) -> f32 {
-    if !rules.largest_first || rho <= 0.0 {
+fn size_of(near: &[f32], corners: [u32; 3], rho: f32, params: &RefineParams) -> f32 {
+    if !params.rules.largest_first || params.simplified || rho <= 0.0 {
         return rho.max(0.0);
     }
     let [a, b, c] = corners.map(|corner| near[corner as usize]);
@@ -301,12 +299,15 @@ fn size_of(near: &[f32], corners: [u32; 3], rho: f32, rules: Rules) -> f32 {
 
 /// `λ1 r`. The radii of the input may be too large, and would take far points for new neighbours: in the first step they
 /// count as no more than [`NATURAL`] times the distance to the farthest neighbour. A selection among all candidates has no use
-/// for radii, and asks for that distance.
+/// for radii, and asks for that distance; if `simplified` for nothing.
 fn near_radius(level: &Level, rings: &Rings, params: &RefineParams, p: usize) -> f32 {
     let (radius, rules) = (level.radii[p], params.rules);
     let believes_radii = !rules.first_radii || level.step > 0 || rings.ring(p).is_empty();
     if !rules.largest_first && believes_radii {
         return params.lambda1 * radius;
+    }
+    if rules.largest_first && params.simplified {
+        return 0.0;
     }
     let mut farthest = 0.0f32;
     for entry in rings.ring(p) {

@@ -12,6 +12,7 @@ pub mod coloring;
 mod columns;
 pub mod commit;
 pub mod conflicts;
+mod contested;
 mod fan;
 pub mod insertion;
 pub mod lists;

@@ -229,24 +229,6 @@ pub(crate) fn literal_point(corners: [Corner; 3], rules: Rules) -> NewPoint {
     checked(position, exact_normal(corners, rho), rho, is_steep)
 }
 
-/// [`new_point`] before it is displaced (section 7, simplification 4): the triangle must have an area, its curved normal is taken
-/// when the point is inserted.
-#[inline(always)]
-pub(crate) fn simplified_point(corners: [Corner; 3], rules: Rules) -> NewPoint {
-    let position = center_of_gravity(corners);
-    let rho = reach(corners, position);
-    let is_steep = rules.steep_faces & is_steep(corners, rho);
-    checked(position, facing(corners, rho), rho, is_steep)
-}
-
-/// A point of [`simplified_point`] after it is displaced; its normal is zero where the curved triangle has none.
-#[inline(always)]
-pub(crate) fn displaced_point(corners: [Corner; 3], rho: f32, rules: Rules) -> NewPoint {
-    let (exact, safe) = (exact_normal(corners, rho), safe_normal(corners, rho, rules));
-    let normal = if rules.sliver_normals { safe } else { exact };
-    (displaced_center(corners), normal, rho)
-}
-
 #[inline(always)]
 fn checked(position: Vec3, normal: Vec3, rho: f32, is_steep: bool) -> NewPoint {
     let fails = (rho == 0.0) | is_none(normal) | is_steep;

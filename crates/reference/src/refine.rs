@@ -6,6 +6,7 @@ use crate::candidates::{Candidates, candidates};
 use crate::coloring::{Classes, coloring};
 use crate::commit::commit;
 use crate::conflicts::{Conflicts, conflicts};
+use crate::contested::{asks_contested_alone, contested_overlaps};
 use crate::insertion::{Insertion, Order, Stage, insertion};
 use crate::lists::Lists;
 use crate::neighborhood::{Rings, neighborhood};
@@ -106,7 +107,7 @@ pub fn refine_with(
         }
         level.begin_step(params.rules);
         let (state, mut report) = run_stages(&level, sight, params, order, &mut clock);
-        let parents = clock.time("commit", || commit(&mut level, &state, params));
+        let parents = clock.time("commit", || commit(&mut level, &state));
         report.stages = clock.times;
         report.points_out = level.len();
         result.parents.par_extend(parents);
@@ -186,7 +187,8 @@ pub struct LevelState {
     pub grid: Grid,
     pub rings: Rings,
     pub candidates: Candidates,
-    pub candidate_grid: Grid,
+    /// None where only contested candidates are asked.
+    pub candidate_grid: Option<Grid>,
     /// Of the selection, which has no conflicts but candidates around points.
     pub overlaps: Lists,
     pub conflicts: Conflicts,
@@ -218,7 +220,10 @@ fn run_stages(
 ) -> (LevelState, LevelReport) {
     let candidates = clock.time("candidates", || candidates(level, &rings, params));
     let first = if params.rules.largest_first { "selection" } else { "conflicts" };
-    let candidate_grid = clock.time(first, || candidate_grid(&grid.shape, &candidates));
+    let candidate_grid = clock.time(first, || {
+        let is_needed = !asks_contested_alone(level, params);
+        is_needed.then(|| candidate_grid(&grid.shape, &candidates))
+    });
     let mut state = LevelState {
         grid,
         rings,
@@ -234,7 +239,8 @@ fn run_stages(
         clock.time("selection", || state.select(level, params));
     } else {
         let LevelState { rings, candidates, candidate_grid, .. } = &state;
-        let graph = || conflicts(level, rings, candidates, candidate_grid, params);
+        let grid = candidate_grid.as_ref().expect("only a selection of the largest does without");
+        let graph = || conflicts(level, rings, candidates, grid, params);
         state.conflicts = clock.time("conflicts", graph);
         state.classes = clock.time("coloring", || coloring(&state.conflicts.before));
         let insert = || insertion(state.stage(level, params), &state.classes, order);
@@ -264,7 +270,10 @@ impl LevelState {
     /// Selects the new points, the largest triangles first.
     fn select(&mut self, level: &Level, params: &RefineParams) {
         let Self { rings, candidates, candidate_grid, .. } = self;
-        self.overlaps = overlaps(level, candidates, candidate_grid, params);
+        self.overlaps = match candidate_grid {
+            Some(grid) => overlaps(level, candidates, grid, params),
+            None => contested_overlaps(rings, candidates, params),
+        };
         (self.insertion, self.conflicts.around) =
             selection(level, rings, candidates, &self.overlaps);
     }

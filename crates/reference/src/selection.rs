@@ -66,7 +66,7 @@ pub fn overlaps(
 }
 
 /// Whether a candidate is decided before another one. Points on curves are inserted before all others, whatever their place.
-fn precedes(candidates: &Candidates, a: usize, b: usize) -> bool {
+pub(crate) fn precedes(candidates: &Candidates, a: usize, b: usize) -> bool {
     let on_curve = |c: usize| c >= candidates.first_on_curve;
     !on_curve(b) && (on_curve(a) || rank(candidates, a) > rank(candidates, b))
 }

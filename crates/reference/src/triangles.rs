@@ -67,18 +67,4 @@ vectorized! {
             new.set(i, pn_triangle::literal_point(triangles.get(i), rules));
         }
     }
-
-    pub(crate) fn simplified_points(triangles: &Triangles, rules: Rules, new: &mut NewPoints) {
-        for i in 0..BLOCK {
-            new.set(i, pn_triangle::simplified_point(triangles.get(i), rules));
-        }
-    }
-
-    /// Displaces points of which ρ is known.
-    pub(crate) fn displaced_points(triangles: &Triangles, rules: Rules, new: &mut NewPoints) {
-        for i in 0..BLOCK {
-            let rho = new.rho[i];
-            new.set(i, pn_triangle::displaced_point(triangles.get(i), rho, rules));
-        }
-    }
 }
