@@ -28,30 +28,43 @@ fn candidates_home(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     }
     let block = fans[p].slots;
     var count = 0u;
+    var is_missed = false;
     for (var slot = block.x; slot < block.x + block.y; slot++) {
         let corners = fan_triangle(p, slot);
         var home = NONE;
-        if corners.x != NONE {
-            home = home_of(corners, p, slot);
+        if corners.x == p {
+            home = slot;
+        } else if corners.x != NONE {
+            home = slot_of(corners.x, corners.y, corners.z);
+            is_missed |= home == NONE;
         }
         homes[slot] = home;
         count += u32(home == slot);
+    }
+    // Rarely: to look for the second corners among the others would cost as much as the others.
+    if is_missed {
+        count += take_missed(p, block);
     }
     first_candidates[p + 1u] = count;
     fans[p].near = near_radius(p, block);
 }
 
-/// The slot of a triangle in the fan of the first of its corners that has it; p's own slot is known.
-fn home_of(corners: vec3<u32>, p: u32, own: u32) -> u32 {
-    if corners.x == p {
-        return own;
+/// Finds to which slots those triangles of a fan belong that the fan of their first corner lacks: to that of their second one, or
+/// else to their own. Returns how many the latter are.
+fn take_missed(p: u32, block: vec2<u32>) -> u32 {
+    var count = 0u;
+    for (var slot = block.x; slot < block.x + block.y; slot++) {
+        let corners = fan_triangle(p, slot);
+        if homes[slot] == NONE && corners.x != NONE {
+            var second = NONE;
+            if corners.y != p {
+                second = slot_of(corners.y, corners.z, corners.x);
+            }
+            homes[slot] = select(second, slot, second == NONE);
+            count += u32(second == NONE);
+        }
     }
-    let first = slot_of(corners.x, corners.y, corners.z);
-    if first != NONE || corners.y == p {
-        return select(first, own, first == NONE);
-    }
-    let second = slot_of(corners.y, corners.z, corners.x);
-    return select(second, own, second == NONE);
+    return count;
 }
 
 /// The slot of the triangle in the fan of p that leads from one corner to the other, or NONE.

@@ -21,33 +21,40 @@ fn selection_links(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     if i >= rounds[1] {
         return;
     }
-    let x = waiting[params.candidates + i];
-    let corners = candidates[x].corners;
-    let first = add_links(x, corners.x, 0u);
-    let second = add_links(x, corners.y, first);
-    heads[x] = add_links(x, corners.z, second);
+    let c = waiting[params.candidates + i];
+    let contested = Contested(c, candidates[c].place.xyz, candidates[c].normal);
+    let corners = candidates[c].corners;
+    let first = add_links(contested, corners.x, 0u);
+    let second = add_links(contested, corners.y, first);
+    heads[c] = add_links(contested, corners.z, second);
     note_cut_loops(corners.x);
 }
 
+struct Contested {
+    id: u32,
+    place: vec3<f32>,
+    normal: vec3<f32>,
+}
+
 /// Puts those of a fan that discard a candidate before its other links, and returns one more than the first one.
-fn add_links(x: u32, p: u32, head: u32) -> u32 {
+fn add_links(x: Contested, p: u32, head: u32) -> u32 {
     let block = fans[p].slots;
     var first = head;
     for (var slot = block.x; slot < block.x + block.y; slot++) {
         let h = of_slot[slot];
-        if h != NONE && h != x && discards(h, x) {
+        if h != NONE && h != x.id && discards(h, x) {
             first = add_link(h, first);
         }
     }
     return first;
 }
 
-fn discards(h: u32, x: u32) -> bool {
-    let d = candidates[x].place.xyz - candidates[h].place.xyz;
+fn discards(h: u32, x: Contested) -> bool {
+    let d = x.place - candidates[h].place.xyz;
     let sphere = params.lambda2 * candidates[h].size;
     return candidates[h].place.w > 0.0 && dot3(d, d) < sphere * sphere
-        && same_side(candidates[h].normal, candidates[x].normal)
-        && (candidates[h].state == INSERTED || precedes(h, x));
+        && same_side(candidates[h].normal, x.normal)
+        && (candidates[h].state == INSERTED || precedes(h, x.id));
 }
 
 /// Too small a buffer is seen by the host in the counters, and the stage runs again.

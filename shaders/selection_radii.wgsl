@@ -22,6 +22,9 @@ const COVER: f32 = 1.02;
 /// Points with more members are left over by next_ring.wgsl.
 const LONGEST_NEXT: u32 = 48u;
 
+/// A rule beyond the paper: see `Rules` in crates/points/src/params.rs. Nothing else asks for N'.
+override next_ring: bool = true;
+
 @compute @workgroup_size(64)
 fn selection_radii(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let p = linear_index(id, groups);
@@ -32,8 +35,9 @@ fn selection_radii(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     let end = slots.x + slots.y;
     var farthest = 0u;
     var size = 0u;
+    var has_others = false;
     // Each side is between two members: the one before looks back on it.
-    var member = Member(NONE, vec3(0.0));
+    var member = Member(NONE, false, vec3(0.0));
     var back = 0u;
     if slots.y > 0u {
         member = member_of(slots.x);
@@ -47,17 +51,25 @@ fn selection_radii(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
             farthest = max(farthest, radius);
             raise(member.id, max(radius, max(back, ahead)));
         }
-        members[slots.x + size] = member.id;
-        size += u32(member.id != NONE && !is_repeated(slot, member.id, slots));
+        if next_ring {
+            members[slots.x + size] = member.id;
+            size += u32(member.id != NONE);
+            has_others |= member.is_other;
+        }
         back = ahead;
         member = after;
     }
     atomicStore(&next_radii[p], select(farthest, bitcast<u32>(points[p].radius), farthest == 0u));
-    fans[p].around = vec2(slots.x, size);
-    fans[p].left_over = 0u;
-    if size + slots.y + 1u > LONGEST_NEXT {
-        fans[p].left_over = NEXT_RING;
-        atomicOr(&counters.left_over, NEXT_RING);
+    if next_ring {
+        if has_others {
+            size = list_once(slots);
+        }
+        fans[p].around = vec2(slots.x, size);
+        fans[p].left_over = 0u;
+        if size + slots.y + 1u > LONGEST_NEXT {
+            fans[p].left_over = NEXT_RING;
+            atomicOr(&counters.left_over, NEXT_RING);
+        }
     }
     note_cut_loops(p);
 }
@@ -65,20 +77,33 @@ fn selection_radii(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
 /// Who stands for the candidate of a slot, or NONE, and its place.
 struct Member {
     id: u32,
+    /// Whether it is not that candidate itself.
+    is_other: bool,
     place: vec3<f32>,
 }
 
 fn member_of(slot: u32) -> Member {
     let id = stand_in(slot);
     if id == NONE {
-        return Member(NONE, vec3(0.0));
+        return Member(NONE, false, vec3(0.0));
     }
-    return Member(id, candidates[id].place.xyz);
+    return Member(id, id != of_slot[slot], candidates[id].place.xyz);
 }
 
 /// What covers the side between two members that follow each other; 0 where there is none.
 fn side_cover(a: Member, b: Member) -> u32 {
     return select(cover(b.place - a.place), 0u, a.id == NONE || b.id == NONE);
+}
+
+/// Lists the members of N' once where some stand for others, and returns their number.
+fn list_once(slots: vec2<u32>) -> u32 {
+    var size = 0u;
+    for (var slot = slots.x; slot < slots.x + slots.y; slot++) {
+        let member = stand_in(slot);
+        members[slots.x + size] = member;
+        size += u32(member != NONE && !is_repeated(slot, member, slots));
+    }
+    return size;
 }
 
 /// Whether a member is in the fan in its own right, or for an earlier slot.

@@ -7,6 +7,7 @@
 
 use crate::ball::{Around, Center, Members};
 use crate::insertion::{COVER, Insertion, Stage, raise};
+use crate::lists::filled;
 use crate::math::{PI, TAU, is_apart};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -29,15 +30,17 @@ const BATCH: usize = 32;
 /// Finds the radii that cover the next level's rings; none if the rule is off.
 pub fn next_ring(stage: Stage<'_>, insertion: &Insertion) -> Covers {
     let points = stage.level.len();
+    if !stage.params.effective_next_ring() {
+        let candidate_radii = filled(0.0, stage.candidates.len());
+        return Covers { radii: filled(0.0, points), candidate_radii };
+    }
     let zeros = |count| (0..count).map(|_| AtomicU32::new(0)).collect();
     let squares: Vec<AtomicU32> = zeros(points + stage.candidates.len());
-    if stage.params.effective_next_ring() {
-        let batches = (0..points.div_ceil(BATCH)).into_par_iter();
-        batches.with_min_len(8).for_each_init(Scratch::default, |scratch, batch| {
-            let batch = batch * BATCH..((batch + 1) * BATCH).min(points);
-            cover_rings(stage, insertion, batch, scratch, &squares);
-        });
-    }
+    let batches = (0..points.div_ceil(BATCH)).into_par_iter();
+    batches.with_min_len(8).for_each_init(Scratch::default, |scratch, batch| {
+        let batch = batch * BATCH..((batch + 1) * BATCH).min(points);
+        cover_rings(stage, insertion, batch, scratch, &squares);
+    });
     let cover = |square: AtomicU32| COVER * f32::from_bits(square.into_inner()).sqrt();
     let mut radii: Vec<f32> = squares.into_par_iter().map(cover).collect();
     let candidate_radii = radii.split_off(points);

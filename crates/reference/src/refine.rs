@@ -275,7 +275,7 @@ impl LevelState {
             None => contested_overlaps(rings, candidates, params),
         };
         (self.insertion, self.conflicts.around) =
-            selection(level, rings, candidates, &self.overlaps);
+            selection(level, rings, candidates, &self.overlaps, params);
     }
 }
 

@@ -76,12 +76,14 @@ fn rank(candidates: &Candidates, c: usize) -> (u32, u32) {
     (candidates.sizes[c].to_bits(), scramble(c as u32))
 }
 
-/// Selects the new points, and gives all points their radii. Returns the new neighbourhoods too, each with its members once.
+/// Selects the new points, and gives all points their radii. Returns the new neighbourhoods too, each with its members once; they
+/// are empty where [`crate::next_ring`] does not ask for them.
 pub fn selection(
     level: &Level,
     rings: &Rings,
     candidates: &Candidates,
     overlaps: &Lists,
+    params: &RefineParams,
 ) -> (Insertion, Lists) {
     let states = select(candidates, overlaps);
     let stands_for: Vec<u32> = (0..candidates.len())
@@ -91,13 +93,14 @@ pub fn selection(
     let stand_in = |c: u32| if c == NO_POINT { c } else { stands_for[c as usize] };
     let zeros = |len| (0..len).into_par_iter().map(|_| AtomicU32::new(0)).collect();
     let (own, squares): (Vec<_>, Vec<_>) = (zeros(level.len()), zeros(candidates.len()));
+    let is_asked = params.effective_next_ring();
     let [members] = Lists::in_chunks(level.len(), Vec::new, |fan, points, [lists]| {
         for p in points {
             let slots = &candidates.of_slot[rings.slots(p)];
             fan.clear();
             fan.extend(slots.iter().map(|&c| Member::new(candidates, stand_in(c))));
             own[p].store(cover_fan(level.positions[p], fan, &squares).to_bits(), Relaxed);
-            for (i, member) in fan.iter().enumerate() {
+            for (i, member) in fan.iter().enumerate().filter(|_| is_asked) {
                 let is_new = member.id != NO_POINT && !is_repeated(slots, i, member.id, stand_in);
                 lists.offer(member.id, is_new);
             }
