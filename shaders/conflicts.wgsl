@@ -14,8 +14,6 @@
 @group(0) @binding(10) var<storage, read_write> counters: Counters;
 @group(0) @binding(11) var<storage, read> curves: array<u32>;
 
-/// Radii exceed the distances they must cover by this factor, so that rounding can't lose the farthest ring.
-const COVER: f32 = 1.02;
 /// Widens what lists must hold, so that rounding can't lose an entry.
 const WIDER: f32 = 1.00001;
 /// New neighbourhoods that are longer, or have more candidates around, are left over by insertion.wgsl,

@@ -31,7 +31,9 @@ const CAPACITY: u32 = 40u;
 /// Members of most neighbourhoods: loops over these are unrolled.
 const MOST: u32 = 8u;
 
-/// Of members that may lie on another sheet.
+// What becomes of a member. Doubtful ones may lie on another sheet.
+const KEPT: u32 = 0u;
+const REMOVED: u32 = 1u;
 const DOUBTFUL: u32 = 2u;
 
 @compute @workgroup_size(64)
@@ -70,6 +72,10 @@ fn neighborhood(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workg
     }
     store_ring(p, ring);
     note_cut_loops(p);
+}
+
+fn is_kept(j: u32) -> bool {
+    return word(FATE, j) == KEPT;
 }
 
 /// Whether a member hides nobody.

@@ -23,16 +23,15 @@ override accurate: bool = true;
 /// Whether the lists hold N' alone, by the selection.
 override largest_first: bool = true;
 
-// Rows: old points by index, then candidates; what became of a member; its angle; its place on the tangent plane; its
-// height over it (of the fuzzy neighbourhood); the members of the ring in order.
+// Rows: old points by index, then candidates; their angles; their places on the tangent plane; their heights over it (of the fuzzy
+// neighbourhood); the members of the ring in order.
 const ID: u32 = 0u;
-const FATE: u32 = 1u;
-const ANGLE: u32 = 2u;
-const X: u32 = 3u;
-const Y: u32 = 4u;
-const HEIGHT: u32 = 5u;
-const ORDER: u32 = 6u;
-const ROWS: u32 = 7u;
+const ANGLE: u32 = 1u;
+const X: u32 = 2u;
+const Y: u32 = 3u;
+const HEIGHT: u32 = 4u;
+const ORDER: u32 = 5u;
+const ROWS: u32 = 6u;
 /// As conflicts.wgsl counts on.
 const CAPACITY: u32 = 48u;
 /// Members of most neighbourhoods: loops over these are unrolled.
@@ -57,12 +56,20 @@ fn next_ring(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
         return;
     }
     let members = gather(p);
+    // Those that are kept come first, with their angles; their places stay where they are, for the others.
+    var size = 0u;
     for (var i = 0u; i < members; i++) {
-        set_word(FATE, i, select(KEPT, REMOVED, is_behind(i, members)));
-        set_number(ANGLE, i, direction_angle(number(Y, i), number(X, i)));
+        set_word(ID, size, word(ID, i));
+        set_number(ANGLE, size, direction_angle(number(Y, i), number(X, i)));
+        size += u32(!is_behind(i, members));
     }
-    cover_ring(p, sort_ring(members));
+    cover_ring(p, sort_ring(size));
     note_cut_loops(p);
+}
+
+/// Those that are not kept are not sorted.
+fn is_kept(j: u32) -> bool {
+    return true;
 }
 
 /// Whether a member hides nobody.

@@ -17,8 +17,6 @@
 @group(0) @binding(8) var<storage, read_write> members: array<u32>;
 @group(0) @binding(9) var<storage, read_write> counters: Counters;
 
-/// Radii exceed the distances they must cover by this factor, so that rounding can't lose the farthest ring.
-const COVER: f32 = 1.02;
 /// Points with more members are left over by next_ring.wgsl.
 const LONGEST_NEXT: u32 = 48u;
 
@@ -127,11 +125,6 @@ fn stand_in(slot: u32) -> u32 {
         return NONE;
     }
     return stand_ins[c];
-}
-
-/// Bits of the radius that covers a distance: they are ordered as radii are.
-fn cover(distance: vec3<f32>) -> u32 {
-    return bitcast<u32>(COVER * sqrt(dot3(distance, distance)));
 }
 
 /// Raises the radius of a candidate. Most are large enough: to look costs less than to write.

@@ -1,9 +1,12 @@
 // Fuzzy planes (section 4.1, eq. 8). Twins: `worst_sines` and `badness` in crates/reference/src/ball.rs
 //
-// Expects `accurate`, `is_left_out` and rows X, Y and HEIGHT of the members, as neighborhood.wgsl has them.
+// Expects `accurate`, `is_left_out` MOST, and rows X, Y and HEIGHT of the members, as neighborhood.wgsl has
+// them.
 
 /// Largest badness of a neighbour: 1, and a margin because regular grids give exactly that.
 const WORST_BADNESS: f32 = 1.001;
+/// Members over which the loop has a constant length: drivers unroll it, and private rows at constant places cost them little.
+const UNROLLED: u32 = MOST * u32(!IN_ARENA);
 
 /// Whether the badness w_i (eq. 8) of member i is above 1: it lies behind its successors and predecessors.
 ///

@@ -2,14 +2,6 @@
 //
 // Expects `next_radii` and what new_ring.wgsl has.
 
-/// Radii exceed the distances they must cover by this factor, so that rounding can't lose the farthest ring.
-const COVER: f32 = 1.02;
-
-/// Bits of the radius that covers a distance: they are ordered as radii are.
-fn cover(distance: vec3<f32>) -> u32 {
-    return bitcast<u32>(COVER * sqrt(dot3(distance, distance)));
-}
-
 /// The centre's radius covers N', those of N' cover the centre and their neighbours there. A point without new
 /// neighbours keeps its radius.
 fn store_radii() {

@@ -20,3 +20,4 @@ mod quality;
 mod rules;
 mod scale;
 mod schedule;
+mod selection;

@@ -142,10 +142,11 @@ fn number_of_threads_is_invisible() {
 
 #[track_caller]
 fn assert_threads_are_invisible(cloud: &PointSet) {
+    let simplified = || RefineParams { simplified: true, ..levels(3) };
     let with_threads = |threads| {
         let pool = ThreadPoolBuilder::new().num_threads(threads).build();
         pool.expect("threads can be started")
-            .install(|| [levels(3), by_gaps(3)].map(|params| refine(cloud, &params)))
+            .install(|| [levels(3), by_gaps(3), simplified()].map(|params| refine(cloud, &params)))
     };
     let one = with_threads(1);
     for threads in [2, 3] {

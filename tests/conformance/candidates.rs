@@ -44,7 +44,9 @@ fn candidates_are_those_of_the_reference() {
         device.run(run, &[&points, &fans, &candidates, &counters, &curves]);
         let widest = f32::from_bits(device.read_counters(&counters, &step.name).widest);
         let scale = expected.rho.iter().copied().fold(0.0, f32::max);
-        must(compare(&what("largest rho"), &[scale], &[widest], device.allows(POSITION), scale));
+        // The paper's selection alone asks for it.
+        let asked = if step.refine.rules.largest_first { 0.0 } else { scale };
+        must(compare(&what("largest rho"), &[asked], &[widest], device.allows(POSITION), scale));
         let found: Vec<Candidate> = device.read(&candidates, expected.len());
         let rows = step.candidates();
         let places = |c: &[Candidate]| c.iter().flat_map(|c| c.place).collect::<Vec<_>>();

@@ -201,13 +201,19 @@ fn degenerate_clouds_give_the_bytes_of_the_reference() {
 fn buffers_that_turn_out_too_small_grow() {
     // A refiner of its own, which provides hardly anything and works in the smallest pieces.
     let mut refiner = Refiner::with_gpu(device().gpu().clone()).expect("the kernels compile");
-    refiner.set_sizing(Sizing { chunk: 100, part: 7, entries: 1 });
+    refiner.set_sizing(Sizing { chunk: 100, part: 7, entries: 1, rounds: 1 });
     let params = RefineParams { levels: 2, ..RefineParams::default() };
+    let simplified = RefineParams { simplified: true, ..params.clone() };
+    let rules = Rules { largest_first: false, ..Rules::ALL };
+    let by_gaps = RefineParams { rules, ..params.clone() };
     // Large, small and large again: buffers are used for clouds of other sizes.
-    for cloud in [1, 0, 2, 1].map(|i| whole().swap_remove(i).0) {
+    for (i, params) in
+        [(1, &params), (0, &simplified), (2, &by_gaps), (2, &simplified), (1, &params)]
+    {
+        let cloud = whole().swap_remove(i).0;
         let expected =
-            surfine_reference::refine(&cloud.points, &params).expect("the cloud is sound");
-        let found = refiner.refine(&cloud.points, &params).expect("the device can do it");
+            surfine_reference::refine(&cloud.points, params).expect("the cloud is sound");
+        let found = refiner.refine(&cloud.points, params).expect("the device can do it");
         if device().is_exact() {
             must_be_identical(&cloud.name, &expected, &found);
         } else {

@@ -4,7 +4,9 @@ use crate::clouds::{whole, whole_outlined};
 use crate::harness::device;
 use std::time::Duration;
 use surfine::testing::{Sizing, read};
-use surfine::{Error, Gpu, GpuRefined, LevelReport, PointSet, RefineParams, Refiner, Slices, wgpu};
+use surfine::{
+    Error, Gpu, GpuRefined, LevelReport, PointSet, RefineParams, Refiner, Rules, Slices, wgpu,
+};
 
 /// So little that each slice holds a workgroup.
 const TINY: Duration = Duration::from_nanos(1);
@@ -88,12 +90,15 @@ fn slices_of_stages_that_run_again_give_the_bytes_of_a_whole_run() {
     let device = device();
     let mut refiner = own_refiner(device.gpu());
     let (points, params) = cases().pop().expect("there are some");
-    let expected = at_once(&mut refiner, &points, &params);
-    let mut refiner = own_refiner(device.gpu());
-    refiner.set_sizing(Sizing { chunk: 100, part: 7, entries: 1 });
-    let mut run = refiner.begin(points, params);
-    let (result, _) = drive(&mut run, &[TINY, Duration::from_micros(300)]).expect("it runs");
-    assert!(contents(device.gpu(), &result) == expected);
+    let rules = Rules { largest_first: false, ..Rules::ALL };
+    for params in [RefineParams { rules, ..params.clone() }, params] {
+        let expected = at_once(&mut refiner, &points, &params);
+        let mut refiner = own_refiner(device.gpu());
+        refiner.set_sizing(Sizing { chunk: 100, part: 7, entries: 1, rounds: 1 });
+        let mut run = refiner.begin(points.clone(), params);
+        let (result, _) = drive(&mut run, &[TINY, Duration::from_micros(300)]).expect("it runs");
+        assert!(contents(device.gpu(), &result) == expected);
+    }
 }
 
 #[test]

@@ -7,10 +7,10 @@
 
 use crate::buffers::with_headroom;
 use crate::records::{Candidate, Fan, Point};
-use crate::selection::LINKS;
+use crate::selection::links;
 use crate::stages::Sizing;
 use crate::{Error, Gpu};
-use surfine_points::{Boundary, GridShape, RefineParams, Rules, Vec3};
+use surfine_points::{Boundary, GridShape, RefineParams, Vec3};
 
 /// Bytes of a word.
 const WORD: u64 = 4;
@@ -56,7 +56,7 @@ impl Forecast {
             needs.reserve("boundary gaps", 4 * WORD * (input / 16 + 1024));
         }
         for pair in sizes.windows(2) {
-            Step::even(pair[0], pair[1], input).add_to(&mut needs, sizing, params.rules);
+            Step::even(pair[0], pair[1], input).add_to(&mut needs, sizing, params);
         }
         let device_bytes = needs.total();
         Self {
@@ -90,7 +90,7 @@ pub(crate) fn check_step(
     (level, records): (u32, usize),
 ) -> Result<(), Error> {
     let have = gpu.largest_binding();
-    let (what, need) = least_largest(records, sizing, params.rules);
+    let (what, need) = least_largest(records, sizing, params);
     if need <= have {
         return Ok(());
     }
@@ -102,10 +102,14 @@ pub(crate) fn check_step(
 }
 
 /// The largest buffer that a step needs whatever it finds, and its bytes.
-pub(crate) fn least_largest(records: usize, sizing: &Sizing, rules: Rules) -> (&'static str, u64) {
+pub(crate) fn least_largest(
+    records: usize,
+    sizing: &Sizing,
+    params: &RefineParams,
+) -> (&'static str, u64) {
     // No room for more: what is needed at least.
     let mut needs = Needs { limit: 0, buffers: Vec::new() };
-    Step::least(records as u64).add_to(&mut needs, sizing, rules);
+    Step::least(records as u64).add_to(&mut needs, sizing, params);
     needs.largest()
 }
 
@@ -169,9 +173,10 @@ impl Step {
     }
 
     /// Its buffers, as the stages reserve them.
-    fn add_to(&self, needs: &mut Needs, sizing: &Sizing, rules: Rules) {
+    fn add_to(&self, needs: &mut Needs, sizing: &Sizing, params: &RefineParams) {
         let &Self { points, after, added, slots, candidates } = self;
-        let items = points.max(candidates);
+        // Where contested candidates alone are asked, the others are in no cell.
+        let items = if params.effective_contested() { points } else { points.max(candidates) };
         // The grid has no more cells for more points.
         let counted = points.min(1 << 30) as usize;
         let cells = GridShape::with_cell(Vec3::ZERO, 1.0, counted).cells() as u64;
@@ -193,7 +198,7 @@ impl Step {
         ];
         let select = [
             ("heads of links", 1, candidates),
-            ("links", 2 * u64::from(LINKS), points),
+            ("links", 2, links(points, sizing)),
             ("waiting", 2, candidates),
         ];
         let insert = [
@@ -204,7 +209,7 @@ impl Step {
             ("waiting", 2, points),
             ("class members", 1, points),
         ];
-        let own = if rules.largest_first { &select[..] } else { &insert };
+        let own = if params.rules.largest_first { &select[..] } else { &insert };
         for (name, words, items) in buffers.iter().chain(own).copied() {
             needs.reserve(name, items.saturating_mul(WORD * words));
         }
@@ -233,7 +238,7 @@ mod tests {
         for records in [1, 100, 12_345, 10_000_000] {
             let params = RefineParams::default();
             let likely = Forecast::new(records, records, &params, &Sizing::default(), 1 << 27);
-            let (_, sure) = least_largest(records, &Sizing::default(), params.rules);
+            let (_, sure) = least_largest(records, &Sizing::default(), &params);
             assert!(sure <= likely.largest_buffer.1, "{records}: {sure} and {likely:?}");
             assert!(likely.device_bytes < likely.uneven_bytes);
         }

@@ -342,7 +342,7 @@ impl Refiner {
             sizing,
             largest_first: refine.rules.largest_first,
             // New points on curves, which no fan has, discard others wherever these are.
-            asks_contested_alone: refine.simplified && on_curves.new == 0,
+            asks_contested_alone: refine.effective_contested() && on_curves.new == 0,
             next_ring: refine.effective_next_ring(),
             params,
             curve_points: on_curves.new,

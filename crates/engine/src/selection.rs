@@ -3,11 +3,13 @@
 use crate::Error;
 use crate::commands::Commands;
 use crate::records::Counters;
-use crate::stages::{CANDIDATE_STRIDE, ROUNDS, Step, WORD, words_of};
+use crate::stages::{CANDIDATE_STRIDE, Sizing, Step, WORD, words_of};
 use std::ops::Range;
 
-/// Links between candidates that are provided for each point before their need is known.
-pub(crate) const LINKS: u32 = 1;
+/// Links between candidates that are provided before their need is known.
+pub(crate) fn links(points: u64, sizing: &Sizing) -> u64 {
+    u64::from(sizing.entries).saturating_mul(points) / 16
+}
 
 impl Step<'_> {
     /// `selection`: which candidates are inserted, and the radii of all points. Returns the number of new points, and which
@@ -18,7 +20,7 @@ impl Step<'_> {
             self.sort_into_grid(self.params.candidates, CANDIDATE_STRIDE).await?;
         }
         self.buffers.mirror_heads.reserve(self.gpu, WORD * candidates)?;
-        self.buffers.mirror_links.reserve(self.gpu, 2 * WORD * u64::from(LINKS) * n)?;
+        self.buffers.mirror_links.reserve(self.gpu, 2 * WORD * links(n, self.sizing))?;
         self.buffers.waiting.reserve(self.gpu, 2 * WORD * candidates)?;
         self.buffers.rounds.reserve(self.gpu, 2 * WORD)?;
         self.buffers.workgroups.reserve(self.gpu, 3 * WORD)?;
@@ -27,23 +29,19 @@ impl Step<'_> {
         self.scan.reserve(self.gpu, self.params.candidates + 1)?;
         loop {
             self.params.mirror_links = words_of(&self.buffers.mirror_links) / 2;
-            // Those that are not contested need no round.
+            self.record_links().await?;
+            // Where contested candidates alone are asked, they wait for round 1.
             let first = u32::from(self.asks_contested_alone);
-            if self.asks_contested_alone {
-                self.record_contested().await?;
-            } else {
-                self.record_overlaps().await?;
-            }
-            let (counters, mut left) = self.run_selection(first..ROUNDS).await?;
+            let mut rounds = first..first + self.sizing.rounds;
+            let (counters, mut left) = self.run_selection(rounds.clone()).await?;
             if counters.mirrored > self.params.mirror_links {
                 let bytes = 2 * WORD * u64::from(counters.mirrored);
                 self.buffers.mirror_links.reserve(self.gpu, bytes)?;
                 continue;
             }
-            let mut round = ROUNDS;
             while left > 0 {
-                left = self.run_selection(round..round + ROUNDS).await?.1;
-                round += ROUNDS;
+                rounds = rounds.end..rounds.end + self.sizing.rounds;
+                left = self.run_selection(rounds.clone()).await?.1;
             }
             break;
         }
@@ -54,38 +52,46 @@ impl Step<'_> {
     }
 
     /// Records who discards whom.
-    async fn record_overlaps(&self) -> Result<(), Error> {
+    async fn record_links(&self) -> Result<(), Error> {
         let b = &*self.buffers;
-        let candidates = self.params.candidates;
         let mut commands = self.commands();
         commands.clear(&b.counters, words_of(&b.counters).into());
-        commands.clear(&b.mirror_heads, candidates.into());
+        commands.clear(&b.mirror_heads, self.params.candidates.into());
         commands.clear(&b.rounds, 2);
-        let inputs = [&b.points, &b.candidates, &b.grid, &b.places];
-        let outputs = [&b.mirror_heads, &b.mirror_links, &b.counters, &b.curves];
-        let kernel = self.kernels.get("selection_overlaps");
-        commands.run(kernel, &[&inputs[..], &outputs].concat(), [0; 4], candidates).await;
+        if self.asks_contested_alone {
+            self.record_contested(&mut commands).await;
+        } else {
+            self.record_overlaps(&mut commands).await;
+        }
         commands.finish().await
     }
 
-    /// Records who discards contested candidates. These wait for round 1.
-    async fn record_contested(&self) -> Result<(), Error> {
+    async fn record_overlaps(&self, commands: &mut Commands<'_>) {
         let b = &*self.buffers;
-        let candidates = self.params.candidates;
-        let mut commands = self.commands();
-        commands.clear(&b.counters, words_of(&b.counters).into());
-        commands.clear(&b.mirror_heads, candidates.into());
-        commands.clear(&b.rounds, 2);
+        let inputs = [&b.points, &b.candidates, &b.grid, &b.places];
+        let outputs = [&b.mirror_heads, &b.mirror_links, &b.counters, &b.curves];
+        let kernel = self.kernels.get("selection_overlaps");
+        let buffers = [&inputs[..], &outputs].concat();
+        commands.run(kernel, &buffers, [0; 4], self.params.candidates).await;
+    }
+
+    /// Records who discards contested candidates.
+    async fn record_contested(&self, commands: &mut Commands<'_>) {
+        let b = &*self.buffers;
         let (graph, list) = ([&b.candidates, &b.fans, &b.of_slot], [&b.waiting, &b.rounds]);
         let kernel = self.kernels.get("selection_contested");
         let buffers = [&graph[..], &[&b.first_candidates], &list, &[&b.counters]].concat();
-        commands.run(kernel, &buffers, [0; 4], candidates).await;
-        self.record_round(&mut commands, 1).await;
+        commands.run(kernel, &buffers, [0; 4], self.params.candidates).await;
+        self.record_round(commands, 1).await;
         let outputs = [&b.mirror_heads, &b.mirror_links, &b.counters];
         let links = self.kernels.get("selection_links");
         let links = commands.bind(links, &[&graph[..], &list, &outputs].concat());
-        commands.dispatch_indirect(&links, [0; 4], &b.workgroups, 0).await;
-        commands.finish().await
+        commands.dispatch_indirect(&links, [0; 4], &b.workgroups, self.waiting_for(1)).await;
+    }
+
+    /// About how many candidates wait for a round. Up to a third are contested, on random points; of them few wait for others.
+    fn waiting_for(&self, round: u32) -> u32 {
+        if self.asks_contested_alone && round == 1 { self.params.candidates / 8 } else { 0 }
     }
 
     /// Prepares a round.
@@ -109,8 +115,8 @@ impl Step<'_> {
                 continue;
             }
             self.record_round(&mut commands, i).await;
-            // Few wait.
-            commands.dispatch_indirect(&round, [i, 0, 0, 0], &b.workgroups, 0).await;
+            let about = self.waiting_for(i);
+            commands.dispatch_indirect(&round, [i, 0, 0, 0], &b.workgroups, about).await;
         }
         commands.finish().await?;
         let (counters, waiting) = self.read(&[(&b.rounds, rounds.end % 2)]).await?;

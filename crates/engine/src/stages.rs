@@ -18,8 +18,6 @@ use surfine_points::{Neighborhood, RefineParams, Rules};
 
 /// Ranges of priorities, as in `shaders/shared/priority.wgsl`: as many rounds of colouring have points that were not there before.
 const RANGES: u32 = 32;
-/// Rounds after these, or between two looks at what is left.
-pub(crate) const ROUNDS: u32 = 8;
 /// Bytes of a word.
 pub(crate) const WORD: u64 = 4;
 
@@ -32,11 +30,13 @@ pub struct Sizing {
     pub part: u32,
     /// Entries of lists that are provided for each point before their need is known.
     pub entries: u32,
+    /// Rounds of the selection, or of the colouring, that are recorded together.
+    pub rounds: u32,
 }
 
 impl Default for Sizing {
     fn default() -> Self {
-        Self { chunk: 1 << 17, part: u32::MAX, entries: 18 }
+        Self { chunk: 1 << 17, part: u32::MAX, entries: 18, rounds: 8 }
     }
 }
 
@@ -198,7 +198,7 @@ impl Step<'_> {
     }
 
     /// Reads the counters alone.
-    pub(crate) async fn counters(&self) -> Result<Counters, Error> {
+    async fn counters(&self) -> Result<Counters, Error> {
         Ok(self.read(&[]).await?.0)
     }
 
@@ -243,7 +243,7 @@ impl Step<'_> {
     }
 
     /// Runs the variant of a kernel with rows in the arena for what was left over, in parts that fit there.
-    pub(crate) async fn run_large(
+    async fn run_large(
         &mut self,
         kernel: &str,
         buffers: fn(&Buffers) -> Vec<&Buffer>,
@@ -441,7 +441,7 @@ impl Step<'_> {
             self.params.mirror_links = words_of(&self.buffers.mirror_links) / 2;
             self.record_mirror().await?;
             self.sort_by_priority().await?;
-            let mut round = RANGES + ROUNDS;
+            let mut round = RANGES + self.sizing.rounds;
             let (mut counters, mut left) = self.run_rounds(0..round).await?;
             let links = counters.mirrored;
             if links > self.params.mirror_links {
@@ -449,8 +449,9 @@ impl Step<'_> {
                 continue;
             }
             while left > 0 {
-                (counters, left) = self.run_rounds(round..round + ROUNDS).await?;
-                round += ROUNDS;
+                let next = round + self.sizing.rounds;
+                (counters, left) = self.run_rounds(round..next).await?;
+                round = next;
             }
             self.sort_by_class(counters.classes).await?;
             let bytes = WORD * (u64::from(counters.classes) + 1);

@@ -274,6 +274,12 @@ impl RefineParams {
         if self.simplified { Neighborhood::Fuzzy } else { self.neighborhood }
     }
 
+    /// Whether contested candidates alone are asked who discards them, where no new points on creases or boundaries can do so:
+    /// `simplified` asks for it, of a selection among all candidates.
+    pub fn effective_contested(&self) -> bool {
+        self.simplified && self.rules.largest_first
+    }
+
     /// Whether radii cover the next level's rings: `simplified` is for clouds that do without.
     pub fn effective_next_ring(&self) -> bool {
         self.rules.next_ring && !self.simplified

@@ -4,12 +4,10 @@
 use crate::Level;
 use crate::angles::direction_angles;
 use crate::columns::{BLOCK, Column, LANES, vectorized};
+use crate::neighborhood::WORST_BADNESS;
 use crate::pn_triangle::geodesic_distance;
 use glam::Vec3;
 use std::ops::Range;
-
-/// Largest badness of a neighbour: 1, and a margin because regular grids give exactly that.
-const WORST_BADNESS: f32 = 1.001;
 
 /// The centre of a neighbourhood.
 #[derive(Clone, Copy, Default)]

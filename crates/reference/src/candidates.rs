@@ -25,7 +25,8 @@ pub const WIDEST_SHEET: f32 = 2.617_994;
 /// Radii exceed the distance to the farthest natural neighbour by this factor.
 pub const NATURAL: f32 = 1.25;
 
-const THIRD: f32 = 1.0 / 3.0;
+/// Of a sum of three, their mean.
+pub const THIRD: f32 = 1.0 / 3.0;
 
 /// The possible new points of all fans, by the slots to which they belong, then the new points on creases and boundaries,
 /// which are inserted in any case.

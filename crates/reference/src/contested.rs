@@ -14,7 +14,7 @@ use surfine_points::RefineParams;
 
 /// Whether contested candidates alone are asked. New points on curves, which no fan has, discard others wherever these are.
 pub(crate) fn asks_contested_alone(level: &Level, params: &RefineParams) -> bool {
-    params.simplified && params.rules.largest_first && level.curve_points.is_empty()
+    params.effective_contested() && level.curve_points.is_empty()
 }
 
 /// For each contested candidate those whose discard sphere (eq. 11) holds it, of those before it in the fans of its corners; for the

@@ -18,6 +18,8 @@ pub const OPPOSITE: f32 = -0.866_025_4;
 pub const NARROW: f32 = 0.7;
 /// Share of the bound of eq. 6 from which pairs are doubtful.
 pub const DOUBTFUL: f32 = 0.5;
+/// Largest badness (eq. 8) of a neighbour: 1, and a margin because regular grids give exactly that.
+pub const WORST_BADNESS: f32 = 1.001;
 /// A ring gap from 100° on may miss a natural neighbour, radians.
 pub const OPEN_GAP: f32 = 1.745_329_3;
 

@@ -142,10 +142,10 @@ pub fn new_normal(corners: [Corner; 3], size: f32, rules: Rules) -> Option<Vec3>
     (!is_none(normal)).then_some(normal)
 }
 
-/// Cosine of 15°, and one over its distance from the cosine of 5°: between them a normal blends from the interpolated to
-/// the exact one.
-const FAR: f32 = 0.965_925_8;
-const BLEND: f32 = 33.037_24;
+/// Cosine of 15°: a normal that is farther from the interpolated one is replaced by it; from there to 5° they blend.
+pub const FAR: f32 = 0.965_925_8;
+/// One over the difference of the cosines of 5° and 15°.
+pub const BLEND: f32 = 33.037_24;
 
 /// [`exact_normal`], but where that is far from the quadratic normal of the corners (Vlachos et al. 2001, section 3.3)
 /// the latter: in slivers the cross product keeps little but rounding. Zero where there is none.
