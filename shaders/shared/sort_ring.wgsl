@@ -3,14 +3,19 @@
 // Expects rows ID, ANGLE and ORDER of the members, and `is_kept`, as neighborhood.wgsl has them.
 
 /// Members over which the loop has a constant length, as in fuzzy_planes.wgsl.
-const SORTED: u32 = 8u * u32(!IN_ARENA);
+const SORTED: u32 = 8u;
 
 /// Sorts the members that are kept by angle, ties by index, and returns their number.
 fn sort_ring(members: u32) -> u32 {
     var size = 0u;
     for (var i = 0u; i < members; i++) {
         if is_kept(i) {
-            set_word(ORDER, rank_of(i, members), i);
+            // Long rows keep few of their members. To compare each with all of them would take loops to the driver's limit.
+            if IN_ARENA {
+                insert(i, size);
+            } else {
+                set_word(ORDER, rank_of(i, members), i);
+            }
             size += 1u;
         }
     }
@@ -19,19 +24,28 @@ fn sort_ring(members: u32) -> u32 {
 
 /// How many of the members that are kept come before member i.
 fn rank_of(i: u32, members: u32) -> u32 {
-    let id = word(ID, i);
-    let angle = number(ANGLE, i);
     var rank = 0u;
     for (var j = 0u; j < SORTED; j++) {
-        rank += u32(j < members & comes_before(j, id, angle));
+        rank += u32(j < members & is_kept(j) & comes_before(j, i));
     }
     for (var j = SORTED; j < members; j++) {
-        rank += u32(comes_before(j, id, angle));
+        rank += u32(is_kept(j) & comes_before(j, i));
     }
     return rank;
 }
 
-fn comes_before(j: u32, id: u32, angle: f32) -> bool {
-    let other = number(ANGLE, j);
-    return is_kept(j) & (other < angle | (other == angle & word(ID, j) < id));
+/// Puts a member into its place among so many that are sorted already.
+fn insert(i: u32, size: u32) {
+    var at = size;
+    while at > 0u && comes_before(i, word(ORDER, at - 1u)) {
+        set_word(ORDER, at, word(ORDER, at - 1u));
+        at -= 1u;
+    }
+    set_word(ORDER, at, i);
+}
+
+fn comes_before(a: u32, b: u32) -> bool {
+    let angle = number(ANGLE, a);
+    let other = number(ANGLE, b);
+    return angle < other | (angle == other & word(ID, a) < word(ID, b));
 }
