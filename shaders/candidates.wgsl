@@ -9,7 +9,7 @@
 
 /// A rule beyond the paper: see `Rules` in crates/points/src/params.rs.
 override largest_first: bool = true;
-/// Whether the simplifications of section 7 are made.
+/// Whether sizes are ρ.
 override simplified: bool = false;
 
 const THIRD: f32 = 1.0 / 3.0;

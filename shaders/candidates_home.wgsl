@@ -14,7 +14,7 @@
 /// Rules beyond the paper: see `Rules` in crates/points/src/params.rs.
 override first_radii: bool = true;
 override largest_first: bool = true;
-/// Whether the simplifications of section 7 are made.
+/// Whether a selection among all candidates asks for no distances: sizes are ρ.
 override simplified: bool = false;
 
 /// Radii exceed the distance to the farthest natural neighbour by this factor.

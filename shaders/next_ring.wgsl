@@ -1,14 +1,14 @@
 // next_ring: radii that cover the next level's rings (ours). Twin: crates/reference/src/next_ring.rs
 // One invocation per point. dispatch: first point, number of points.
 //
-// The members of the old ring and the inserted candidates within the new radius go through the filter of section 4;
-// what is left must be within the radii, of the point and of the members alike. The radii are in shared/ahead.wgsl.
+// The members of the old ring and of N' (by the paper's selection all inserted candidates within the new radius) go through the filter
+// of section 4; what is left must be within the radii, of the point and of the members alike. The radii are in shared/ahead.wgsl.
 
 @group(0) @binding(2) var<storage, read> points: array<Point>;
 @group(0) @binding(3) var<storage, read> fans: array<Fan>;
 @group(0) @binding(4) var<storage, read> ring_entries: array<vec2<u32>>;
 @group(0) @binding(5) var<storage, read> candidates: array<Candidate>;
-/// Lists of candidates around points and of conflicts.
+/// The members of N'; by the paper's selection lists of candidates around points and of conflicts.
 @group(0) @binding(6) var<storage, read> around: array<u32>;
 /// Bits of the radii at the next level: of the points, then of the candidates; then of the points by this kernel, which reads the
 /// first ones.
@@ -82,7 +82,7 @@ fn count_members(p: u32) -> u32 {
     return fans[p].slots.y + fans[p].around.y + 1u;
 }
 
-/// Lists the members of the old ring and the new points within the new radius.
+/// Lists the members of the old ring, and of N' or the new points within the new radius.
 fn gather(p: u32) -> u32 {
     let center = points[p];
     var all = Around(center.position, center.radius, center.normal, frame_of(p), 0u);

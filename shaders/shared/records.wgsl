@@ -16,7 +16,7 @@ struct Fan {
     /// The first of its ring entries and their number: its slots.
     slots: vec2<u32>,
     /// Within this distance new points are new neighbours: λ1 r, or less in the first step. For a selection among all candidates
-    /// λ1 times the distance to the farthest neighbour.
+    /// λ1 times the distance to the farthest neighbour; 0 if simplified.
     near: f32,
     /// A bit for each kernel that leaves it to its variant with rows in the arena.
     left_over: u32,
@@ -31,7 +31,8 @@ struct Candidate {
     /// Position, and ρ: the largest distance to the three corners, or -1 where the triangle has no candidate.
     place: vec4<f32>,
     normal: vec3<f32>,
-    /// The class that inserted it, from 1; or ON_CURVE, or FREE.
+    /// The class that inserted it, from 1; or ON_CURVE, or FREE. Of a selection among all candidates also WAITING, and INSERTED for
+    /// any class.
     state: u32,
     /// Corners of its triangle, smallest index first and orientation kept.
     corners: vec3<u32>,
@@ -92,7 +93,7 @@ struct Counters {
     slots: atomic<u32>,
     /// Entries of lists of candidates around points and of conflicts that were asked for.
     around: atomic<u32>,
-    /// Links of mirrored conflicts that were asked for.
+    /// Links of mirrored conflicts, or of candidates to those that discard them, that were asked for.
     mirrored: atomic<u32>,
     /// Number of classes.
     classes: atomic<u32>,

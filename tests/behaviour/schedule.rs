@@ -17,7 +17,7 @@ use crate::clouds::{
 use crate::curves::{even, uneven};
 use crate::measure::assert_same_bytes;
 
-/// The accurate neighbourhood, the fuzzy one, and all four simplifications, at 3 levels with the paper's selection, which alone has
+/// The accurate neighbourhood, the fuzzy one, and the simplified variant, at 3 levels with the paper's selection, which alone has
 /// an order of points.
 fn variants() -> [(&'static str, RefineParams); 3] {
     let fuzzy = RefineParams { neighborhood: Neighborhood::Fuzzy, ..by_gaps(3) };

@@ -46,8 +46,9 @@ pub struct RefineParams {
     pub levels: u32,
     /// Which neighbourhood; `simplified` overrides it.
     pub neighborhood: Neighborhood,
-    /// The four simplifications of section 7: Euclidean distance, plain angle, `N^f`, displacement after insertion; and no look
-    /// ahead to the next level's rings.
+    /// Faster, for dense smooth clouds, as section 7 does it: Euclidean distance, plain angle and `N^f`; no look ahead to the next
+    /// level's rings; of a selection among all candidates, only those are asked who discards them that not all three fans have,
+    /// and `lambda1` means nothing.
     pub simplified: bool,
     /// The angle between new neighbours is straight instead of curved (eq. 5); `simplified` asks for it too. Without
     /// [`Rules::largest_first`].
@@ -60,7 +61,8 @@ pub struct RefineParams {
     /// Share of the radius within which a new point is a new neighbour (section 5), in (0, 1]; see also [`Rules::largest_first`].
     /// Default 1/√3.
     pub lambda1: f32,
-    /// Share of a new point's radius that is its discard sphere (eq. 11), in [0, 1]. Default 1/2.
+    /// Share of a new point's size that is the radius of its discard sphere (eq. 11), in [0, 1]: of its ρ, or with
+    /// [`Rules::largest_first`] of its triangle's size. Default 1/2.
     pub lambda2: f32,
     /// Which points may lie on a boundary (section 6). Default: `θ_b` of 160°.
     pub boundary: Boundary,

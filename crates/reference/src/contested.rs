@@ -1,4 +1,5 @@
-//! Overlaps of contested candidates alone (ours, a simplification). Twin: `shaders/selection_contested.wgsl`.
+//! Overlaps of contested candidates alone (ours, a simplification). Twins: `shaders/selection_contested.wgsl` and
+//! `selection_links.wgsl`.
 //!
 //! Where the surface is well sampled, almost all triangles are in the fans of all three corners, and their candidates stay out of each
 //! other's discard spheres. What overlaps are triangles that only some of the fans have: of four points on a circle each pair takes

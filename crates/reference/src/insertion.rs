@@ -41,7 +41,7 @@ pub enum Order {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Insertion {
     /// One more than the class that inserted each candidate; 0 for the new points on curves, which come before the first class,
-    /// and [`FREE`] for what was not inserted.
+    /// and [`FREE`] for what was not inserted. A selection among all candidates has one class.
     pub states: Vec<u32>,
     /// Radius of each inserted candidate as a point of the next level.
     pub candidate_radii: Vec<f32>,

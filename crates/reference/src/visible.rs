@@ -3,7 +3,8 @@
 //!
 //! The paper splits a crease point's neighbourhood by the most similar normal. That is not enough: eq. 6 never rejects a
 //! pair across an edge of 90°, so fans would cross the crease. Here points see each other only if they lie on one sheet
-//! as far as the curves nearby can tell. It filters `N^E`, N' and Y alike; no step averages across a crease.
+//! as far as the curves nearby can tell. It filters `N^E` and who discards whom, by the
+//! paper's loop N' and Y; no step averages across a crease.
 
 use crate::Level;
 use crate::math::{direction_angle, is_apart};
