@@ -75,6 +75,12 @@ fn control_polygon([a, b, c]: [Corner; 3]) -> ControlPolygon {
     }
 }
 
+/// Centre of gravity of a triangle.
+#[inline(always)]
+pub fn center_of_gravity([a, b, c]: [Corner; 3]) -> Vec3 {
+    a.position + ((b.position - a.position) + (c.position - a.position)) * 0.333_333_34
+}
+
 /// The centre of gravity displaced by the smoothing operator φ (eq. 3).
 #[inline(always)]
 pub fn displaced_center(corners: [Corner; 3]) -> Vec3 {
@@ -236,11 +242,6 @@ mod tests {
     fn on_sphere(x: f32, y: f32, z: f32) -> Corner {
         let n = Vec3::new(x, y, z).normalize();
         Corner { position: n, normal: n }
-    }
-
-    /// Centre of gravity of a triangle.
-    fn center_of_gravity([a, b, c]: [Corner; 3]) -> Vec3 {
-        a.position + ((b.position - a.position) + (c.position - a.position)) * 0.333_333_34
     }
 
     #[test]
