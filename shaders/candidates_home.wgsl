@@ -29,17 +29,21 @@ fn candidates_home(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     let block = fans[p].slots;
     var count = 0u;
     var is_missed = false;
+    var begin = first_entry(block);
     for (var slot = block.x; slot < block.x + block.y; slot++) {
-        let corners = fan_triangle(p, slot);
+        let end = entry_after(slot, block);
+        let corners = canonical(p, begin.x, end.x);
         var home = NONE;
-        if corners.x == p {
+        if is_triangle(p, begin, end, is_last(slot, block)) {
             home = slot;
-        } else if corners.x != NONE {
-            home = slot_of(corners.x, corners.y, corners.z);
-            is_missed |= home == NONE;
+            if corners.x != p {
+                home = slot_of(corners.x, corners.y, corners.z);
+                is_missed |= home == NONE;
+            }
         }
         homes[slot] = home;
         count += u32(home == slot);
+        begin = end;
     }
     // Rarely: to look for the second corners among the others would cost as much as the others.
     if is_missed {
@@ -53,9 +57,11 @@ fn candidates_home(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
 /// else to their own. Returns how many the latter are.
 fn take_missed(p: u32, block: vec2<u32>) -> u32 {
     var count = 0u;
+    var begin = first_entry(block);
     for (var slot = block.x; slot < block.x + block.y; slot++) {
-        let corners = fan_triangle(p, slot);
-        if homes[slot] == NONE && corners.x != NONE {
+        let end = entry_after(slot, block);
+        let corners = canonical(p, begin.x, end.x);
+        if homes[slot] == NONE && is_triangle(p, begin, end, is_last(slot, block)) {
             var second = NONE;
             if corners.y != p {
                 second = slot_of(corners.y, corners.z, corners.x);
@@ -63,22 +69,50 @@ fn take_missed(p: u32, block: vec2<u32>) -> u32 {
             homes[slot] = select(second, slot, second == NONE);
             count += u32(second == NONE);
         }
+        begin = end;
     }
     return count;
+}
+
+/// The first entry of a ring.
+fn first_entry(block: vec2<u32>) -> vec2<u32> {
+    if block.y == 0u {
+        return vec2(NONE);
+    }
+    return ring_entries[block.x];
+}
+
+/// The entry of a ring that follows a slot's own.
+fn entry_after(slot: u32, block: vec2<u32>) -> vec2<u32> {
+    return ring_entries[select(slot + 1u, block.x, is_last(slot, block))];
+}
+
+fn is_last(slot: u32, block: vec2<u32>) -> bool {
+    return slot + 1u == block.x + block.y;
 }
 
 /// The slot of the triangle in the fan of p that leads from one corner to the other, or NONE.
 fn slot_of(p: u32, begin: u32, end: u32) -> u32 {
     let block = fans[p].slots;
     var found = NONE;
+    var angles = vec2(0u);
+    let first = first_entry(block);
+    var entry = first;
     for (var slot = block.x; slot < block.x + block.y; slot++) {
-        found = select(found, slot, ring_entries[slot].x == begin);
+        let is_wrapping = is_last(slot, block);
+        var after = first;
+        if !is_wrapping {
+            after = ring_entries[slot + 1u];
+        }
+        let is_it = entry.x == begin & after.x == end;
+        found = select(found, slot, is_it);
+        angles = select(angles, vec2(entry.y, after.y), is_it);
+        entry = after;
     }
     if found == NONE {
         return NONE;
     }
-    let next = select(found + 1u, block.x, found + 1u == block.x + block.y);
-    let is_there = ring_entries[next].x == end && fan_triangle(p, found).x != NONE;
+    let is_there = is_triangle(p, vec2(begin, angles.x), vec2(end, angles.y), is_last(found, block));
     return select(NONE, found, is_there);
 }
 

@@ -33,7 +33,7 @@ fn candidates_are_those_of_the_reference() {
         let firsts = device.buffer("firsts", &summed);
         let numbers = device.output::<u32>("numbers", slots);
         let candidates = device.output::<Candidate>("candidates", expected.len());
-        let buffers = [&points, &fans, &entries, &of_slot, &firsts, &numbers, &candidates, &curves];
+        let buffers = [&fans, &entries, &of_slot, &firsts, &numbers, &candidates];
         device.run(step.run("candidates_number", [0; 4], n), &buffers);
         device.run(step.run("candidates_link", [0; 4], slots), &[&numbers, &of_slot]);
         let found: Vec<u32> = device.read(&of_slot, slots);

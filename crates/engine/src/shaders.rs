@@ -121,8 +121,8 @@ pub const SHADERS: &[Shader] = &[
     NEIGHBORHOOD[0],
     NEIGHBORHOOD[1],
     shader!("boundary_gaps", "math"),
-    shader!("candidates_home", "math", "curves", "fan_triangle"),
-    shader!("candidates_number", "math", "curves", "fan_triangle"),
+    shader!("candidates_home", "math", "curves", "fan_triangle", "canonical"),
+    shader!("candidates_number", "canonical"),
     shader!("candidates_link"),
     shader!("candidates", "math", "pn_triangle", "corners", "new_normal", "curves"),
     shader!(

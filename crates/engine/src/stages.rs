@@ -380,8 +380,8 @@ impl Step<'_> {
         self.buffers.candidates.reserve(self.gpu, bytes)?;
         let b = &*self.buffers;
         let mut commands = self.commands();
-        let inputs = [&b.points, &b.fans, &b.ring_entries, &b.of_slot, &b.first_candidates];
-        let outputs = [&b.numbers, &b.candidates, &b.curves];
+        let inputs = [&b.fans, &b.ring_entries, &b.of_slot, &b.first_candidates];
+        let outputs = [&b.numbers, &b.candidates];
         let kernel = self.kernels.get("candidates_number");
         commands.run(kernel, &[&inputs[..], &outputs].concat(), [0; 4], n).await;
         let link = self.kernels.get("candidates_link");
