@@ -91,15 +91,22 @@ pub(crate) fn with_headroom(bytes: u64, limit: u64) -> u64 {
     bytes.saturating_add(bytes / 4).min(limit).max(bytes)
 }
 
-/// Reads `bytes` bytes from the start of a buffer, and waits for them.
-pub(crate) fn read(gpu: &Gpu, source: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8>, Error> {
-    if bytes == 0 {
-        return Ok(Vec::new());
+/// Waits for the first values of a buffer and gives a view of them to a function: large ones are not copied once more.
+pub(crate) fn read<T: bytemuck::Pod, R>(
+    gpu: &Gpu,
+    source: &wgpu::Buffer,
+    count: usize,
+    take: impl FnOnce(&[T]) -> R,
+) -> Result<R, Error> {
+    if count == 0 {
+        return Ok(take(&[]));
     }
     let encoder = gpu.device.create_command_encoder(&Default::default());
-    let readback = Readback::submit(gpu, encoder, &[(source, 0, bytes)]);
+    let readback = Readback::submit(gpu, encoder, &[(source, 0, (count * size_of::<T>()) as u64)]);
     gpu.wait()?;
-    readback.bytes(gpu)
+    let view = readback.mapped.view(gpu, &readback.staging)?;
+    // Mapped memory is aligned for all values of words.
+    Ok(take(bytemuck::cast_slice(&view)))
 }
 
 /// Bytes on their way to the host.

@@ -68,7 +68,6 @@ pub mod testing {
         buffer: &wgpu::Buffer,
         count: usize,
     ) -> Result<Vec<T>, crate::Error> {
-        let bytes = crate::buffers::read(gpu, buffer, (count * size_of::<T>()) as u64)?;
-        Ok(bytemuck::pod_collect_to_vec(&bytes))
+        crate::buffers::read(gpu, buffer, count, <[T]>::to_vec)
     }
 }

@@ -10,6 +10,7 @@ use crate::scan::Scan;
 use crate::stages::{Buffers, Constants, Kernels, Sizing, Step, constants};
 use crate::uniforms::Uniforms;
 use crate::{Error, Gpu, choose_adapter};
+use rayon::prelude::*;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 use surfine_features::{
@@ -463,23 +464,16 @@ impl Refiner {
         params: &RefineParams,
         result: GpuRefined,
     ) -> Result<Refined, Error> {
-        let bytes = (result.len() * size_of::<Point>()) as u64;
-        let points = buffers::read(&self.gpu, &result.points, bytes)?;
-        let points: Vec<Point> = bytemuck::pod_collect_to_vec(&points);
+        let new = result.len() - result.records.len();
+        let (positions, normals, radii) =
+            buffers::read(&self.gpu, &result.points, result.len(), columns)?;
+        let parents = buffers::read(&self.gpu, &result.parents, new, <[[u32; 3]]>::to_vec)?;
         let GpuRefined { level_sizes, level_radii, reports, curves, device_bytes, .. } = result;
         let (ordered, records, features) = (result.ordered, result.records, result.features);
-        let new = &points[records.len()..];
-        let parents = buffers::read(&self.gpu, &result.parents, 12 * new.len() as u64)?;
-        let refinement = Refinement {
-            positions: new.iter().map(|p| Vec3::from_array(p.position)).collect(),
-            normals: new.iter().map(|p| Vec3::from_array(p.normal)).collect(),
-            radii: points.iter().map(|p| p.radius).collect(),
-            parents: bytemuck::pod_collect_to_vec(&parents),
-            level_sizes,
-            level_radii,
-        };
+        let refinement =
+            Refinement { positions, normals, radii, parents, level_sizes, level_radii };
         let folded =
-            fold(&ordered.points, &records, &features, &refinement, params.boundary.property());
+            fold(&ordered.points, &records, &features, refinement, params.boundary.property());
         let mut reports = reports;
         folded.count_points(&mut reports);
         let Folded { points, parents, level_sizes, level_radii } = folded;
@@ -489,6 +483,15 @@ impl Refiner {
         ordered.restore(input, &mut refined);
         Ok(refined)
     }
+}
+
+/// Positions, normals and radii of points.
+fn columns(points: &[Point]) -> (Vec<Vec3>, Vec<Vec3>, Vec<f32>) {
+    let vectors = |of: fn(&Point) -> [f32; 3]| {
+        points.par_iter().map(|point| Vec3::from_array(of(point))).collect()
+    };
+    let radii = points.par_iter().map(|point| point.radius).collect();
+    (vectors(|point| point.position), vectors(|point| point.normal), radii)
 }
 
 /// Records that fit beside the level in a word of a point.

@@ -12,11 +12,11 @@ const KIND: &str = "kind";
 /// A refined cloud of records.
 #[derive(Clone, Debug, Default)]
 pub struct Refinement {
-    /// Positions of the new records.
+    /// Positions of all records.
     pub positions: Vec<Vec3>,
     /// Their unit normals.
     pub normals: Vec<Vec3>,
-    /// Radii of all records.
+    /// Their radii.
     pub radii: Vec<f32>,
     /// The corners of each new record.
     pub parents: Vec<[u32; 3]>,
@@ -45,9 +45,12 @@ pub fn fold(
     input: &PointSet,
     split: &Records,
     features: &Features,
-    refined: &Refinement,
+    refined: Refinement,
     marks: Option<&str>,
 ) -> Folded {
+    if is_plain(input, features, marks) {
+        return keep(input, refined);
+    }
     let places = Places::new(input, split, features, refined.radii.len());
     let first = input.len();
     let new = |record: u32| record as usize - split.len();
@@ -55,11 +58,11 @@ pub fn fold(
     let parents: Vec<[u32; 3]> =
         places.kept.iter().map(|&r| refined.parents[new(r)].map(to_point)).collect();
     let mut points = input.clone();
-    points.positions.extend(places.kept.iter().map(|&r| refined.positions[new(r)]));
-    points.normals.extend(places.kept.iter().map(|&r| refined.normals[new(r)]));
+    points.positions.extend(places.kept.iter().map(|&r| refined.positions[r as usize]));
+    points.normals.extend(places.kept.iter().map(|&r| refined.normals[r as usize]));
     points.radii = places.fold_radii(&refined.radii);
     points.extend_attributes(&parents);
-    let sides = places.sides_of_new(first, split.len(), features, refined);
+    let sides = places.sides_of_new(first, split.len(), features, &refined.normals);
     if places.merges {
         set_further_normals(&mut points, first, &sides);
     }
@@ -76,8 +79,19 @@ pub fn fold(
     Folded { points, parents, level_sizes, level_radii }
 }
 
-/// Whether every record is a point, and no property says what it is: then there is nothing to fold.
-pub fn is_plain(input: &PointSet, features: &Features, marks: Option<&str>) -> bool {
+/// What [`fold`] gives where there is nothing to fold.
+fn keep(input: &PointSet, refined: Refinement) -> Folded {
+    let Refinement { positions, mut normals, radii, parents, level_sizes, level_radii } = refined;
+    // The records have the unit normals that the input may lack.
+    normals[..input.len()].copy_from_slice(&input.normals);
+    let (attributes, origin) = (input.attributes.clone(), input.origin);
+    let mut points = PointSet { positions, normals, radii, attributes, origin };
+    points.extend_attributes(&parents);
+    Folded { points, parents, level_sizes, level_radii }
+}
+
+/// Whether every record is a point, and no property says what it is.
+fn is_plain(input: &PointSet, features: &Features, marks: Option<&str>) -> bool {
     features.is_empty() && marks.is_none() && !has_further_normals(input)
 }
 
@@ -149,13 +163,13 @@ impl Places {
         points: usize,
         records: usize,
         features: &Features,
-        refined: &Refinement,
+        normals: &[Vec3],
     ) -> Vec<Sides> {
         let mut sides = vec![Sides::default(); self.kept.len()];
         for record in features.records.iter().filter(|r| r.point as usize >= records) {
             let own = &mut sides[self.point_of[record.point as usize] as usize - points];
             if own.count > 0 && self.merges {
-                own.further.push(refined.normals[record.point as usize - records]);
+                own.further.push(normals[record.point as usize]);
             }
             own.count = record.sides;
         }

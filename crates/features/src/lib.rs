@@ -18,7 +18,7 @@ mod topology;
 
 pub use boundary::{Gap, STRAIGHT, check_marks, may_be_boundary};
 pub use curve::CurvePoint;
-pub use fold::{Folded, Refinement, clear_sides, fold, is_plain};
+pub use fold::{Folded, Refinement, clear_sides, fold};
 pub use records::Records;
 
 use glam::Vec3;

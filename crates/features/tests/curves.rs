@@ -253,14 +253,14 @@ fn folded_points_have_the_normals_and_the_largest_radius_of_their_sides() {
     features.commit(split.len());
     let radii = (0..8 + new.len()).map(|i| 2.0 + i as f32).collect();
     let refined = Refinement {
-        positions: new.iter().map(|p| p.position).collect(),
-        normals: new.iter().map(|p| p.normal).collect(),
+        positions: split.positions.iter().copied().chain(new.iter().map(|p| p.position)).collect(),
+        normals: split.normals.iter().copied().chain(new.iter().map(|p| p.normal)).collect(),
         radii,
         parents: new.iter().map(|p| p.parents).collect(),
         level_sizes: vec![8, 8 + new.len()],
         level_radii: Vec::new(),
     };
-    let folded = fold(&points, &split, &features, &refined, None);
+    let folded = fold(&points, &split, &features, refined, None);
     assert_eq!(folded.level_sizes, [4, 4 + 6]);
     assert_eq!(folded.points.len(), 10);
     // Records 0 and 4 are the two sides of point 0, with radii 2 and 6; the first new point has records 8 and 9.

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use std::fmt;
 use std::mem::take;
 use std::time::{Duration, Instant};
-use surfine_features::{Folded, Records, Refinement, check_marks, fold, is_plain};
+use surfine_features::{Folded, Records, Refinement, check_marks, fold};
 use surfine_points::{
     Boundary, Grid, GridShape, Invalid, LevelReport, Ordered, ParamError, PointSet, Progress,
     RefineParams, Refined, add_stage_time,
@@ -131,23 +131,12 @@ fn fold_level(
     result: &mut Refined,
     params: &RefineParams,
 ) -> Folded {
-    let Level { mut positions, mut normals, radii, curves, .. } = level;
+    let Level { positions, normals, radii, curves, .. } = level;
     let (parents, level_sizes) = (take(&mut result.parents), take(&mut result.level_sizes));
     let level_radii = take(&mut result.level_radii);
     let features = curves.map(|curves| curves.features).unwrap_or_default();
-    let marks = params.boundary.property();
-    if is_plain(input, &features, marks) {
-        // The level has the unit normals that the input may lack.
-        normals[..input.len()].copy_from_slice(&input.normals);
-        let (attributes, origin) = (input.attributes.clone(), input.origin);
-        let mut points = PointSet { positions, normals, radii, attributes, origin };
-        points.extend_attributes(&parents);
-        return Folded { points, parents, level_sizes, level_radii };
-    }
-    let (positions, normals) =
-        (positions.split_off(records.len()), normals.split_off(records.len()));
     let refinement = Refinement { positions, normals, radii, parents, level_sizes, level_radii };
-    fold(input, records, &features, &refinement, marks)
+    fold(input, records, &features, refinement, params.boundary.property())
 }
 
 /// Times the stages and tells the caller where the run stands.
