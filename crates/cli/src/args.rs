@@ -227,7 +227,7 @@ struct VariantArgs {
     /// Which points are neighbors
     #[arg(long, value_enum, value_name = "KIND", default_value_t)]
     neighborhood: NeighborhoodChoice,
-    /// Some 1.5 times as fast, for dense smooth clouds: Euclidean distances, no look ahead to the next step, and triangles on which
+    /// Some 1.5 times as fast, for dense smooth clouds: Euclidean distances, no rules for irregular samples, and triangles on which
     /// their corners agree are refined unasked; implies fuzzy
     #[arg(long)]
     simplified: bool,

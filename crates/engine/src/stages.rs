@@ -14,7 +14,7 @@ use crate::{Error, Gpu};
 use std::mem::offset_of;
 use std::ops::Range;
 use surfine_features::Gap;
-use surfine_points::{Neighborhood, RefineParams, Rules};
+use surfine_points::{Neighborhood, RefineParams};
 
 /// Ranges of priorities, as in `shaders/shared/priority.wgsl`: as many rounds of colouring have points that were not there before.
 const RANGES: u32 = 32;
@@ -51,7 +51,7 @@ pub fn constants(params: &RefineParams, with_curves: bool) -> Constants {
         [("accurate", accurate), ("simplified", params.simplified), ("plain_angle", plain_angle)];
     let modes = modes.into_iter().chain([("with_curves", with_curves)]);
     // The host splits the curves.
-    let rules = Rules { next_ring: params.effective_next_ring(), ..params.rules };
+    let rules = params.effective_rules();
     let rules = rules.named().into_iter().filter(|(name, _)| *name != "even_steps");
     let all = modes.chain(rules);
     all.map(|(name, on)| (name, f64::from(on))).collect()

@@ -47,7 +47,7 @@ pub struct RefineParams {
     /// Which neighbourhood; `simplified` overrides it.
     pub neighborhood: Neighborhood,
     /// Faster, for dense smooth clouds, as section 7 does it: Euclidean distance, plain angle and `N^f`; no look ahead to the next
-    /// level's rings; of a selection among all candidates, only those are asked who discards them that not all three fans have,
+    /// level's rings, no natural neighbours in open gaps; of a selection among all candidates, only those are asked who discards them that not all three fans have,
     /// and `lambda1` means nothing.
     pub simplified: bool,
     /// The angle between new neighbours is straight instead of curved (eq. 5); `simplified` asks for it too. Without
@@ -282,8 +282,18 @@ impl RefineParams {
         self.simplified && self.rules.largest_first
     }
 
-    /// Whether radii cover the next level's rings: `simplified` is for clouds that do without.
+    /// The rules that hold: `simplified` is for clouds that do without those for irregular samples.
+    pub fn effective_rules(&self) -> Rules {
+        let irregular = !self.simplified;
+        Rules {
+            next_ring: self.rules.next_ring && irregular,
+            natural_neighbors: self.rules.natural_neighbors && irregular,
+            ..self.rules
+        }
+    }
+
+    /// Whether radii cover the next level's rings.
     pub fn effective_next_ring(&self) -> bool {
-        self.rules.next_ring && !self.simplified
+        self.effective_rules().next_ring
     }
 }

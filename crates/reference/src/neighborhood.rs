@@ -80,7 +80,7 @@ pub fn neighborhood(level: &Level, grid: &Grid, params: &RefineParams) -> Rings 
             let batch = first..(first + BATCH).min(points.end);
             size += find_balls(level, grid, batch.clone(), scratch);
             scratch.members.project(filter.fuzzy);
-            scratch.members.judge(|pairs, verdicts| judge(pairs, params.rules, verdicts));
+            scratch.members.judge(|pairs, verdicts| judge(pairs, filter.rules, verdicts));
             for (rank, p) in batch.enumerate() {
                 one_ring(level, p, scratch.members.own(rank), scratch, &filter);
                 rings.items.extend(&scratch.ring);
@@ -102,7 +102,7 @@ struct Filter {
 impl Filter {
     fn new(params: &RefineParams) -> Self {
         Self {
-            rules: params.rules,
+            rules: params.effective_rules(),
             fuzzy: params.effective_neighborhood() == Neighborhood::Fuzzy,
             sin_theta_f: params.sin_theta_f(),
         }
