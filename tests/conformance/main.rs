@@ -20,3 +20,4 @@ mod refine;
 mod selection;
 mod slices;
 mod tolerance;
+mod windows;

@@ -14,7 +14,7 @@ fn flat(vectors: &[Vec3]) -> Vec<f32> {
 }
 
 /// Everything must be equal, bit for bit.
-fn must_be_identical(name: &str, expected: &Refined, found: &Refined) {
+pub(crate) fn must_be_identical(name: &str, expected: &Refined, found: &Refined) {
     let what = |column: &str| format!("{name}: {column}");
     must(compare_equal(&what("level sizes"), &expected.level_sizes, &found.level_sizes));
     must(compare_equal(&what("parents"), &expected.parents, &found.parents));
@@ -40,7 +40,7 @@ fn must_be_identical(name: &str, expected: &Refined, found: &Refined) {
 
 /// On adapters that round otherwise: the first level's new points are those of the same triangles, but for a budget of
 /// flipped decisions, and lie where the reference puts them.
-fn must_be_close(name: &str, expected: &Refined, found: &Refined) {
+pub(crate) fn must_be_close(name: &str, expected: &Refined, found: &Refined) {
     let old = expected.level_sizes[0];
     let (expected_new, found_new) = (expected.level_sizes[1] - old, found.level_sizes[1] - old);
     let place: HashMap<[u32; 3], usize> =

@@ -1,7 +1,9 @@
 //! Device memory that grows and is used again.
 
 use crate::gpu::Mapped;
+use crate::windows::window_bytes;
 use crate::{Error, Gpu};
+use std::num::NonZeroU64;
 
 /// A labelled storage buffer. It grows on demand and never shrinks.
 #[derive(Debug)]
@@ -22,7 +24,7 @@ impl Buffer {
     /// # Errors
     /// The adapter does not allow that much in one buffer.
     pub fn new(gpu: &Gpu, label: &'static str, bytes: u64) -> Result<Self, Error> {
-        let have = gpu.largest_binding();
+        let have = gpu.largest_buffer();
         if bytes > have {
             return Err(Error::Limit { what: label, need: bytes, have, adapter: gpu.name.clone() });
         }
@@ -53,6 +55,21 @@ impl Buffer {
     /// Bytes that it holds.
     pub fn size(&self) -> u64 {
         self.raw.size()
+    }
+
+    /// The bindings that a kernel sees it through: one if it is no longer than a binding may be.
+    pub(crate) fn windows(&self, gpu: &Gpu) -> Vec<wgpu::BindingResource<'_>> {
+        let largest_binding = gpu.largest_binding();
+        let window = window_bytes(largest_binding);
+        let whole = self.size() <= largest_binding;
+        let step = if whole { self.size() } else { window };
+        let offsets = (0..self.size()).step_by(step as usize);
+        let binding = |offset| wgpu::BufferBinding {
+            buffer: &self.raw,
+            offset,
+            size: NonZeroU64::new(step.min(self.size() - offset)),
+        };
+        offsets.map(|offset| wgpu::BindingResource::Buffer(binding(offset))).collect()
     }
 
     /// The buffer itself.

@@ -12,9 +12,10 @@ use crate::{Error, Gpu};
 
 /// A kernel with its buffers.
 #[derive(Debug)]
-pub struct Bound<'a> {
-    kernel: &'a Kernel,
-    group: wgpu::BindGroup,
+pub struct Bound {
+    name: &'static str,
+    /// None after a failure.
+    ready: Option<(wgpu::ComputePipeline, wgpu::BindGroup)>,
 }
 
 /// Dispatches that are submitted together.
@@ -37,23 +38,30 @@ impl<'a> Commands<'a> {
     }
 
     /// Binds storage buffers to a kernel, in the order of its bindings from 2 on.
-    pub fn bind<'k>(&self, kernel: &'k Kernel, buffers: &[&Buffer]) -> Bound<'k> {
-        let mut resources = self.uniforms.resources().to_vec();
-        resources.extend(buffers.iter().map(|b| b.raw().as_entire_binding()));
-        let entries: Vec<_> = (0..)
-            .zip(resources)
-            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-            .collect();
-        let group = self.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some(kernel.name()),
-            layout: kernel.layout(),
-            entries: &entries,
+    pub fn bind(&mut self, kernel: &Kernel, buffers: &[&Buffer]) -> Bound {
+        let windows: Vec<_> = buffers.iter().map(|b| b.windows(self.gpu)).collect();
+        let counts: Vec<_> = windows.iter().map(|w| w.len() as u32).collect();
+        let ready = kernel.with_windows(self.gpu, &counts).map(|compiled| {
+            // The windows after the first follow the other bindings.
+            let further = windows.iter().flat_map(|w| &w[1..]);
+            let resources = windows.iter().map(|w| &w[0]).chain(further).cloned();
+            let entries: Vec<_> = (0..)
+                .zip(self.uniforms.resources().into_iter().chain(resources))
+                .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+                .collect();
+            let group = self.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some(kernel.name()),
+                layout: &compiled.layout,
+                entries: &entries,
+            });
+            (compiled.pipeline, group)
         });
-        Bound { kernel, group }
+        let ready = ready.map_err(|e| self.failure.get_or_insert(e).clone()).ok();
+        Bound { name: kernel.name(), ready }
     }
 
     /// Records one dispatch of at least `invocations` invocations; `words` is what the kernel says of its `dispatch` uniform.
-    pub async fn dispatch(&mut self, bound: &Bound<'_>, words: [u32; 4], invocations: u32) {
+    pub async fn dispatch(&mut self, bound: &Bound, words: [u32; 4], invocations: u32) {
         let mut first = 0;
         while first < invocations && self.failure.is_none() {
             let count = self.fitting(bound, invocations - first).await;
@@ -70,16 +78,16 @@ impl<'a> Commands<'a> {
     /// invocations, or few if none are said. It is not cut, but waits for the next slice if these don't fit.
     pub async fn dispatch_indirect(
         &mut self,
-        bound: &Bound<'_>,
+        bound: &Bound,
         words: [u32; 4],
         groups: &Buffer,
         about: u32,
     ) {
         self.make_room().await;
-        if self.uniforms.take(self.gpu, bound.kernel.name(), about) < about {
+        if self.uniforms.take(self.gpu, bound.name, about) < about {
             self.flush();
             self.settle().await;
-            self.uniforms.take(self.gpu, bound.kernel.name(), about);
+            self.uniforms.take(self.gpu, bound.name, about);
         }
         self.record(bound, (words, 0), about, |pass| {
             pass.dispatch_workgroups_indirect(groups.raw(), 0);
@@ -87,10 +95,10 @@ impl<'a> Commands<'a> {
     }
 
     /// How many of so many invocations the slice has room for; it is ended if there is none.
-    async fn fitting(&mut self, bound: &Bound<'_>, invocations: u32) -> u32 {
+    async fn fitting(&mut self, bound: &Bound, invocations: u32) -> u32 {
         loop {
             self.make_room().await;
-            let count = self.uniforms.take(self.gpu, bound.kernel.name(), invocations);
+            let count = self.uniforms.take(self.gpu, bound.name, invocations);
             // Where nothing can run any more, nothing fits.
             if count > 0 || self.failure.is_some() {
                 return count;
@@ -113,20 +121,21 @@ impl<'a> Commands<'a> {
 
     fn record(
         &mut self,
-        bound: &Bound<'_>,
+        bound: &Bound,
         ([x, y, z, w], first): ([u32; 4], u32),
         invocations: u32,
         dispatch: impl FnOnce(&mut wgpu::ComputePass<'_>),
     ) {
+        let Some((pipeline, group)) = &bound.ready else { return };
         let offset = self.recorded.len() as u32;
         self.recorded.extend_from_slice(bytemuck::bytes_of(&Dispatch { x, y, z, w, first }));
         self.recorded.resize(offset as usize + STRIDE as usize, 0);
         let mut pass = self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some(bound.kernel.name()),
-            timestamp_writes: self.uniforms.time(bound.kernel.name(), invocations),
+            label: Some(bound.name),
+            timestamp_writes: self.uniforms.time(bound.name, invocations),
         });
-        pass.set_pipeline(bound.kernel.pipeline());
-        pass.set_bind_group(0, &bound.group, &[offset]);
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, group, &[offset]);
         dispatch(&mut pass);
     }
 

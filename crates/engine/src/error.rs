@@ -40,6 +40,21 @@ pub enum Error {
         /// Name of the adapter.
         adapter: String,
     },
+    /// The buffers of a kernel are so long that they need more bindings than it may have.
+    #[error(
+        "the buffers of the kernel {kernel} need {need} bindings, more than the {have} that {adapter} allows: \
+         use fewer levels, split the cloud, or use the CPU"
+    )]
+    Bindings {
+        /// Name of the kernel.
+        kernel: &'static str,
+        /// Bindings needed.
+        need: u32,
+        /// Bindings allowed.
+        have: u32,
+        /// Name of the adapter.
+        adapter: String,
+    },
     /// A step has more points than the device can hold, whatever it finds.
     #[error(
         "step {level} of {levels} has {points} points to refine: its buffer of {what} alone needs {need} bytes, more than the \

@@ -89,14 +89,15 @@ pub(crate) fn check_step(
     params: &RefineParams,
     (level, records): (u32, usize),
 ) -> Result<(), Error> {
-    let have = gpu.largest_binding();
+    let have = gpu.largest_buffer();
     let (what, need) = least_largest(records, sizing, params);
     if need <= have {
         return Ok(());
     }
     let levels = params.levels;
     let rest = RefineParams { levels: levels + 1 - level, ..params.clone() };
-    let total = Forecast::new(records, records, &rest, sizing, have).device_bytes;
+    let limit = gpu.largest_binding();
+    let total = Forecast::new(records, records, &rest, sizing, limit).device_bytes;
     let adapter = gpu.name.clone();
     Err(Error::TooLarge { level, levels, points: records, what, need, have, total, adapter })
 }

@@ -7,6 +7,12 @@ use std::time::Duration;
 /// How long the host waits for the device before it gives up: a hang must not be for ever.
 const TIMEOUT: Duration = Duration::from_secs(600);
 
+/// The most storage buffers that a kernel has.
+const KERNEL_BUFFERS: u32 = 10;
+/// All buffers of a kernel together are no longer than so many times the largest of them, on even clouds: 2.5 times by default, 3.1
+/// times by the paper's selection.
+const BUFFERS_AT_ONCE: u64 = 4;
+
 /// How kernels were compiled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
@@ -116,11 +122,20 @@ impl Gpu {
         Self { device, queue, mode, name: info.name }
     }
 
-    /// The largest buffer that a kernel can use, bytes.
+    /// The largest buffer that a kernel can use through one binding, bytes.
     pub fn largest_binding(&self) -> u64 {
         let limits = self.device.limits();
         // Buffers are rounded up to 16 bytes, and drivers' limits need not be multiples of that.
         limits.max_storage_buffer_binding_size.min(limits.max_buffer_size) & !15
+    }
+
+    /// The largest buffer of a refinement, bytes: longer ones than a binding have several, as far as a stage may have so many.
+    pub fn largest_buffer(&self) -> u64 {
+        let limits = self.device.limits();
+        let spare = limits.max_storage_buffers_per_shader_stage.saturating_sub(KERNEL_BUFFERS);
+        let most = limits.max_buffer_size & !15;
+        let binding = self.largest_binding();
+        most.min(binding.saturating_add(binding / BUFFERS_AT_ONCE * u64::from(spare)))
     }
 
     /// Runs `work` and returns the device's own complaint, if there was one, rather than what followed from it.

@@ -1,7 +1,10 @@
 //! One compute kernel: from WGSL to a pipeline, with its layout read from the text.
 
 use crate::shaders::Shader;
+use crate::windows::{split, window_bytes};
 use crate::{Error, Gpu, Mode};
+use std::borrow::Cow;
+use std::sync::{Mutex, PoisonError};
 
 /// Invocations of a workgroup; `linear_index` in the shaders counts on it.
 pub const WORKGROUP_SIZE: u32 = 64;
@@ -9,9 +12,19 @@ pub const WORKGROUP_SIZE: u32 = 64;
 /// A kernel that is ready to run.
 #[derive(Debug)]
 pub struct Kernel {
-    name: &'static str,
-    pipeline: wgpu::ComputePipeline,
-    layout: wgpu::BindGroupLayout,
+    shader: Shader,
+    constants: Vec<(&'static str, f64)>,
+    /// For buffers that one binding each holds.
+    whole: Compiled,
+    /// For longer buffers, by the number of windows of each binding from 2 on; compiled when they are met.
+    windowed: Mutex<Vec<(Vec<u32>, Compiled)>>,
+}
+
+/// A pipeline with the layout of its bindings.
+#[derive(Clone, Debug)]
+pub(crate) struct Compiled {
+    pub(crate) pipeline: wgpu::ComputePipeline,
+    pub(crate) layout: wgpu::BindGroupLayout,
 }
 
 impl Kernel {
@@ -20,59 +33,90 @@ impl Kernel {
     ///
     /// # Errors
     /// The text is no valid WGSL, or the driver refuses it.
-    pub fn new(gpu: &Gpu, shader: &Shader, constants: &[(&str, f64)]) -> Result<Self, Error> {
-        let failed = |message: String| Error::Kernel { name: shader.name, message };
-        let source = shader.source();
-        let module = naga::front::wgsl::parse_str(&source)
-            .map_err(|e| failed(e.emit_to_string_with_path(&source, shader.name)))?;
-        let entries = layout_entries(&module);
-        let constants = declared(&module, constants);
-        gpu.guarded(|| {
-            let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some(shader.name),
-                entries: &entries,
-            });
-            let pipeline_layout =
-                gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                    label: Some(shader.name),
-                    bind_group_layouts: &[Some(&layout)],
-                    immediate_size: 0,
-                });
-            let compiled = match gpu.mode {
-                Mode::Exact => exact_module(gpu, shader, &module, &constants).map_err(failed)?,
-                Mode::Plain => gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                    label: Some(shader.name),
-                    source: wgpu::ShaderSource::Wgsl(source.as_str().into()),
-                }),
-            };
-            let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(shader.name),
-                layout: Some(&pipeline_layout),
-                module: &compiled,
-                entry_point: Some(shader.entry),
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    // The exact text has them built in.
-                    constants: if gpu.mode == Mode::Exact { &[] } else { &constants },
-                    ..Default::default()
-                },
-                cache: None,
-            });
-            Ok(Self { name: shader.name, pipeline, layout })
-        })
+    pub fn new(
+        gpu: &Gpu,
+        shader: &Shader,
+        constants: &[(&'static str, f64)],
+    ) -> Result<Self, Error> {
+        let whole = compile(gpu, shader, constants, &[])?;
+        let (constants, windowed) = (constants.to_vec(), Mutex::default());
+        Ok(Self { shader: *shader, constants, whole, windowed })
     }
 
     /// Name of the kernel.
     pub fn name(&self) -> &'static str {
-        self.name
+        self.shader.name
     }
 
-    pub(crate) fn pipeline(&self) -> &wgpu::ComputePipeline {
-        &self.pipeline
+    /// The kernel for buffers with so many windows.
+    ///
+    /// # Errors
+    /// As [`Kernel::new`], or a stage may not have so many storage buffers.
+    pub(crate) fn with_windows(&self, gpu: &Gpu, windows: &[u32]) -> Result<Compiled, Error> {
+        if windows.iter().all(|count| *count == 1) {
+            return Ok(self.whole.clone());
+        }
+        let mut compiled = self.windowed.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, found)) = compiled.iter().find(|(counts, _)| counts == windows) {
+            return Ok(found.clone());
+        }
+        let (need, have) =
+            (windows.iter().sum(), gpu.device.limits().max_storage_buffers_per_shader_stage);
+        if need > have {
+            let (kernel, adapter) = (self.name(), gpu.name.clone());
+            return Err(Error::Bindings { kernel, need, have, adapter });
+        }
+        let new = compile(gpu, &self.shader, &self.constants, windows)?;
+        compiled.push((windows.to_vec(), new.clone()));
+        Ok(new)
     }
+}
 
-    pub(crate) fn layout(&self) -> &wgpu::BindGroupLayout {
-        &self.layout
+fn compile(
+    gpu: &Gpu,
+    shader: &Shader,
+    constants: &[(&str, f64)],
+    windows: &[u32],
+) -> Result<Compiled, Error> {
+    let failed = |message: String| Error::Kernel { name: shader.name, message };
+    let source = shader.source();
+    let mut module = naga::front::wgsl::parse_str(&source)
+        .map_err(|e| failed(e.emit_to_string_with_path(&source, shader.name)))?;
+    if !windows.is_empty() {
+        split(&mut module, windows, window_bytes(gpu.largest_binding())).map_err(failed)?;
     }
+    let constants = declared(&module, constants);
+    gpu.guarded(|| {
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some(shader.name),
+            entries: &layout_entries(&module),
+        });
+        let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(shader.name),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let compiled = match gpu.mode {
+            Mode::Exact => exact_module(gpu, shader, &module, &constants).map_err(failed)?,
+            Mode::Plain => gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(shader.name),
+                source: wgpu::ShaderSource::Naga(Cow::Owned(module)),
+            }),
+        };
+        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(shader.name),
+            layout: Some(&pipeline_layout),
+            module: &compiled,
+            entry_point: Some(shader.entry),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                // The exact text has them built in.
+                constants: if gpu.mode == Mode::Exact { &[] } else { &constants },
+                ..Default::default()
+            },
+            cache: None,
+        });
+        Ok(Compiled { pipeline, layout })
+    })
 }
 
 /// The constants that the module declares as `override`s.

@@ -33,6 +33,7 @@ pub mod shaders;
 mod slices;
 mod stages;
 mod uniforms;
+mod windows;
 
 pub use error::Error;
 pub use forecast::{Forecast, points_by_level};
