@@ -1,35 +1,62 @@
 //! Buffers that are longer than a binding may be: the same bytes through several windows.
 
 use crate::clouds::{Cloud, describe, variants, whole, whole_outlined};
-use crate::harness::device;
+use crate::harness::{FREE, device};
 use crate::refine::{must_be_close, must_be_identical};
-use surfine::testing::Sizing;
-use surfine::{Error, Gpu, RefineParams, Refiner, wgpu};
+use surfine::records::{Candidate, Params};
+use surfine::shaders::SHADERS;
+use surfine::testing::{Buffer, Commands, Uniforms, constants, read};
+use surfine::{Error, Gpu, Kernel, Mode, RefineParams, Refiner, wgpu};
 
-/// Bytes that the devices of these tests allow in a binding: a tenth to a fifth of what the clouds need, and no multiple of a record.
-const BINDING: u64 = 50_000;
+/// Bytes that the devices of these tests allow in a binding: a third of the largest buffers, and no multiple of a record.
+const BINDING: u64 = 100_000;
 
-/// A refiner whose device has small bindings, and whether its kernels may have more of them.
-fn refiner() -> (Refiner, bool) {
+/// A device with small bindings.
+fn small(features: wgpu::Features) -> Gpu {
     let adapter = surfine::choose_adapter(None).expect("the suite has an adapter");
     let limits = adapter.limits();
-    let has_more = limits.max_storage_buffers_per_shader_stage >= 32;
     let descriptor = wgpu::DeviceDescriptor {
-        required_features: adapter.features() & wgpu::Features::PASSTHROUGH_SHADERS,
+        required_features: adapter.features() & features,
         required_limits: wgpu::Limits { max_storage_buffer_binding_size: BINDING, ..limits },
         ..Default::default()
     };
-    let (own, queue) =
-        pollster::block_on(adapter.request_device(&descriptor)).expect("the adapter opens");
-    (Refiner::with_gpu(Gpu::from_device(own, queue)).expect("the kernels compile"), has_more)
+    let opened = pollster::block_on(adapter.request_device(&descriptor));
+    let (device, queue) = opened.expect("the adapter opens");
+    Gpu::from_device(device, queue)
+}
+
+/// Storage buffers that a kernel may have on it.
+fn bindings(gpu: &Gpu) -> u32 {
+    gpu.device.limits().max_storage_buffers_per_shader_stage
+}
+
+fn kernel(gpu: &Gpu, name: &str) -> Kernel {
+    let shader = SHADERS.iter().find(|s| s.name == name).expect("it is in the table");
+    Kernel::new(gpu, shader, &constants(&RefineParams::default(), false)).expect("it compiles")
+}
+
+/// Runs a kernel alone.
+fn run(
+    gpu: &Gpu,
+    kernel: &Kernel,
+    params: Params,
+    buffers: &[&Buffer],
+    invocations: u32,
+) -> Result<(), Error> {
+    let uniforms = Uniforms::new(gpu);
+    uniforms.set(gpu, &params);
+    let mut commands = Commands::new(gpu, &uniforms);
+    pollster::block_on(async {
+        commands.run(kernel, buffers, [0; 4], invocations).await;
+        commands.finish().await
+    })
 }
 
 fn check(refiner: &mut Refiner, cloud: &Cloud, params: &RefineParams, is_exact: bool) {
     let name = format!("{} {} in windows", cloud.name, describe(params));
     let expected = surfine_reference::refine(&cloud.points, params).expect("the cloud is sound");
     let found = refiner.refine(&cloud.points, params).unwrap_or_else(|e| panic!("{name}: {e}"));
-    let bytes = 32 * found.points.len() as u64;
-    assert!(bytes > 3 * BINDING, "{name}: {bytes} bytes of points are no more than few bindings");
+    assert!(32 * found.points.len() as u64 > 2 * BINDING, "{name}: few bindings would do");
     if is_exact {
         must_be_identical(&name, &expected, &found);
     } else {
@@ -40,8 +67,10 @@ fn check(refiner: &mut Refiner, cloud: &Cloud, params: &RefineParams, is_exact: 
 #[test]
 fn windows_give_the_bytes_of_whole_buffers() {
     let is_exact = device().is_exact();
-    let (mut refiner, has_more) = refiner();
-    let clouds = || [whole().swap_remove(0).0, whole().swap_remove(1).0];
+    let gpu = small(wgpu::Features::PASSTHROUGH_SHADERS);
+    let has_more = bindings(&gpu) >= 32;
+    let mut refiner = Refiner::with_gpu(gpu).expect("the kernels compile");
+    let cloud = |i| whole().swap_remove(i).0;
     let cube = whole_outlined().swap_remove(0).0;
     if !has_more {
         // Ten storage buffers a stage leave none for further windows.
@@ -50,25 +79,52 @@ fn windows_give_the_bytes_of_whole_buffers() {
         assert!(matches!(failure, Err(Error::TooLarge { .. })), "{failure:?}");
         return;
     }
-    for params in variants() {
-        let params = RefineParams { levels: 2, ..params };
-        clouds().iter().for_each(|cloud| check(&mut refiner, cloud, &params, is_exact));
+    let [accurate, _, simplified, by_gaps, ..] = variants();
+    for (cloud, params) in [(cloud(0), &accurate), (cloud(1), &simplified), (cloud(1), &by_gaps)] {
+        check(&mut refiner, &cloud, &RefineParams { levels: 2, ..params.clone() }, is_exact);
     }
-    check(&mut refiner, &cube, &RefineParams { levels: 3, ..Default::default() }, is_exact);
-    // Long rows are done in parts that fit in one binding.
-    let crowded = whole().swap_remove(5).0;
-    refiner.set_sizing(Sizing { rounds: 1, ..Sizing::default() });
-    check(&mut refiner, &crowded, &RefineParams { levels: 3, ..Default::default() }, is_exact);
+    let accurate = RefineParams { levels: 3, ..accurate };
+    check(&mut refiner, &cube, &accurate, is_exact);
+    // The rows of its many neighbours are done in parts that fit in one binding.
+    check(&mut refiner, &cloud(5), &accurate, is_exact);
+}
+
+#[test]
+fn plain_kernels_have_windows_too() {
+    let gpu = small(wgpu::Features::empty());
+    assert_eq!(gpu.mode, Mode::Plain);
+    let state = |c| if c % 3 == 0 { FREE } else { 1 };
+    let states = (0..6000).map(state);
+    let candidates: Vec<_> =
+        states.clone().map(|state| Candidate { state, ..Default::default() }).collect();
+    let expected: Vec<u32> = states.map(|state| u32::from(state != FREE)).collect();
+    let count = candidates.len();
+    let params = Params { candidates: count as u32, ..Params::default() };
+    let new_indices = Buffer::new(&gpu, "indices", 4 * (count as u64 + 1)).expect("it fits");
+    if let Ok(candidates) = Buffer::with_data(&gpu, "candidates", &candidates) {
+        let kernel = kernel(&gpu, "commit_count");
+        run(&gpu, &kernel, params, &[&candidates, &new_indices], count as u32).expect("it runs");
+        let found: Vec<u32> = read(&gpu, new_indices.raw(), count + 1).expect("it is alive");
+        assert_eq!(found[1..], expected);
+    } else {
+        assert_eq!(bindings(&gpu), 10, "three windows are too many only where none is to spare");
+    }
 }
 
 #[test]
 fn a_kernel_that_needs_too_many_windows_says_so() {
-    let (mut refiner, _) = refiner();
-    let cloud = whole().swap_remove(0).0;
-    let failure = refiner.refine(&cloud.points, &RefineParams { levels: 5, ..Default::default() });
-    let failure = failure.expect_err("there are not so many bindings");
-    assert!(matches!(failure, Error::TooLarge { .. } | Error::Bindings { .. }), "{failure}");
-    assert!(failure.to_string().contains("use fewer levels"), "{failure}");
-    // The refiner can be used again.
-    refiner.refine(&cloud.points, &RefineParams { levels: 1, ..Default::default() }).expect("fits");
+    let gpu = small(wgpu::Features::PASSTHROUGH_SHADERS);
+    // Six buffers of as many windows as the largest one may have.
+    let bytes = gpu.largest_buffer();
+    let buffers = [(); 6].map(|()| Buffer::new(&gpu, "any", bytes).expect("it is allowed"));
+    let windows = 6 * bytes.div_ceil(BINDING) as u32;
+    match run(&gpu, &kernel(&gpu, "commit"), Params::default(), &buffers.each_ref(), 0) {
+        Err(failure @ Error::Bindings { need, .. }) => {
+            assert!(need >= windows && need > bindings(&gpu), "{failure}");
+            assert!(failure.to_string().contains("use fewer levels"), "{failure}");
+        }
+        // Ten bindings leave none to spare, so that buffers have one window each.
+        Ok(()) => assert!(windows <= bindings(&gpu), "{windows} windows"),
+        Err(other) => panic!("{other}"),
+    }
 }

@@ -28,7 +28,7 @@ pub(crate) struct DeviceNeed {
     pub(crate) adapter: String,
     pub(crate) forecast: Forecast,
     /// Bytes that the adapter allows in one buffer.
-    pub(crate) largest_binding: u64,
+    pub(crate) largest_allowed: u64,
     /// Whether the device has its buffers in the memory of the host.
     pub(crate) on_host: bool,
 }
@@ -61,8 +61,8 @@ impl Need {
         let read_back = end(&sizes).saturating_mul(READ_BACK_BYTES + 2 * attribute_bytes(points));
         let buffers = if on_host { forecast.device_bytes.saturating_add(DRIVER_BYTES) } else { 0 };
         let host = read_back.saturating_add(buffers);
-        let (adapter, largest_binding) = (gpu.name.clone(), gpu.largest_binding());
-        let device = Some(DeviceNeed { adapter, forecast, largest_binding, on_host });
+        let (adapter, largest_allowed) = (gpu.name.clone(), gpu.largest_buffer());
+        let device = Some(DeviceNeed { adapter, forecast, largest_allowed, on_host });
         Ok(Self { points_by_level: sizes, host, least_host: 0, device })
     }
 
@@ -103,10 +103,10 @@ impl Need {
 impl DeviceNeed {
     fn fits(&self, remedy: &str) -> Fits {
         let (name, need) = self.forecast.largest_buffer;
-        if need <= self.largest_binding {
+        if need <= self.largest_allowed {
             return Fits::Yes;
         }
-        let (need, have) = (bytes(need), bytes(self.largest_binding));
+        let (need, have) = (bytes(need), bytes(self.largest_allowed));
         let adapter = &self.adapter;
         Fits::Unlikely(format!(
             "its buffer of {name} would take about {need}, {adapter} allows {have} in one buffer: {remedy}, or use the CPU"

@@ -29,7 +29,7 @@ pub struct Forecast {
     pub device_bytes: u64,
     /// The same for a cloud with clusters and gaps, or with generous radii.
     pub uneven_bytes: u64,
-    /// The largest buffer: its name and its bytes, which the adapter must allow in one binding.
+    /// The largest buffer: its name and its bytes, which the adapter must allow.
     pub largest_buffer: (&'static str, u64),
 }
 

@@ -39,7 +39,8 @@ pub struct Refiner {
 #[derive(Debug)]
 pub struct GpuRefined {
     /// [`Point`](crate::records::Point)s of 32 bytes: position at offset 0, radius at 12, normal at 16, level in the byte at
-    /// 28. Usable as vertex or storage buffer and as copy source; it may be longer than [`GpuRefined::len`] points. They are in the order of
+    /// 28. Usable as vertex or storage buffer and as copy source; it may be longer than [`GpuRefined::len`] points, and than the device
+    /// allows in one binding. They are in the order of
     /// `ordered`. A point on a crease is one of these for each of its sides: those of further normals follow the input points, and the new
     /// ones follow each other.
     pub points: wgpu::Buffer,

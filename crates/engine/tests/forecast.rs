@@ -3,13 +3,16 @@
 use surfine::{Error, Gpu, PointSet, RefineParams, Refiner, choose_adapter, wgpu};
 use surfine_points::shapes::{Sampling, Shape, sample};
 
-/// A refiner whose device allows so many bytes in a buffer.
-fn refiner(largest_binding: u64) -> Refiner {
+/// A refiner whose device allows so many bytes in a binding, and so many storage buffers in a stage.
+fn refiner(largest_binding: u64, buffers: u32) -> Refiner {
     let adapter = choose_adapter(None).unwrap_or_else(|e| panic!("{e}"));
     let usual = adapter.limits();
-    let max_storage_buffer_binding_size =
-        largest_binding.min(usual.max_storage_buffer_binding_size);
-    let required_limits = wgpu::Limits { max_storage_buffer_binding_size, ..usual };
+    let required_limits = wgpu::Limits {
+        max_storage_buffer_binding_size: largest_binding.min(usual.max_storage_buffer_binding_size),
+        max_storage_buffers_per_shader_stage: buffers
+            .min(usual.max_storage_buffers_per_shader_stage),
+        ..usual
+    };
     // Kernels are compiled as `Gpu::open` has them: software drivers take longer for the others.
     let required_features = adapter.features() & wgpu::Features::PASSTHROUGH_SHADERS;
     let descriptor =
@@ -24,7 +27,7 @@ fn levels(levels: u32) -> RefineParams {
 
 /// Bytes that a new refiner took over those foretold, and over those foretold for uneven clouds.
 fn ratios(points: &PointSet, params: &RefineParams) -> (f64, f64) {
-    let mut refiner = refiner(u64::MAX);
+    let mut refiner = refiner(u64::MAX, u32::MAX);
     let forecast = refiner.forecast(points, params).unwrap();
     let result = refiner.refine_on_device(points, params, &mut |_| ()).unwrap();
     assert_eq!(forecast.points_by_level.len(), result.level_sizes.len());
@@ -61,7 +64,7 @@ fn uneven_clouds_take_no_more_than_is_foretold_for_them() {
 
 #[test]
 fn what_is_sure_to_fail_fails_before_the_first_stage() {
-    let mut refiner = refiner(1 << 20);
+    let mut refiner = refiner(1 << 20, 10);
     let sphere = sample(Shape::Sphere, Sampling::BlueNoise, 24_000, 1);
     let foretold = refiner.forecast(&sphere, &levels(2)).unwrap_err();
     let mut stages = Vec::new();
@@ -80,7 +83,7 @@ fn what_is_sure_to_fail_fails_before_the_first_stage() {
 
 #[test]
 fn what_is_only_likely_to_fail_is_tried() {
-    let mut refiner = refiner(1 << 20);
+    let mut refiner = refiner(1 << 20, 10);
     let sphere = sample(Shape::Sphere, Sampling::BlueNoise, 6800, 1);
     refiner.refine(&sphere, &levels(1)).unwrap();
     let forecast = refiner.forecast(&sphere, &levels(2)).unwrap();
@@ -96,4 +99,14 @@ fn what_is_only_likely_to_fail_is_tried() {
     let mut lonely = sphere;
     lonely.radii.fill(1e-4);
     assert_eq!(refiner.refine(&lonely, &levels(2)).unwrap().points.len(), 6800);
+}
+
+#[test]
+fn more_bindings_make_for_larger_buffers() {
+    let largest = |buffers| refiner(1 << 20, buffers).gpu().largest_buffer();
+    assert_eq!(largest(10), 1 << 20);
+    let gpu = refiner(1 << 20, u32::MAX).gpu().clone();
+    let spare = u64::from(gpu.device.limits().max_storage_buffers_per_shader_stage) - 10;
+    let most = gpu.device.limits().max_buffer_size & !15;
+    assert_eq!(gpu.largest_buffer(), most.min((1 << 20) + spare * (1 << 18)));
 }

@@ -65,7 +65,7 @@ struct Device {
     largest_buffer: &'static str,
     largest_buffer_bytes: u64,
     /// What the adapter allows in one buffer.
-    largest_binding: u64,
+    largest_allowed_bytes: u64,
     /// Whether it is a part of the host's memory.
     on_host: bool,
 }
@@ -116,14 +116,14 @@ impl Report {
 
 impl Device {
     fn new(need: DeviceNeed) -> Self {
-        let DeviceNeed { forecast, largest_binding, on_host, .. } = need;
+        let DeviceNeed { forecast, largest_allowed, on_host, .. } = need;
         let (largest_buffer, largest_buffer_bytes) = forecast.largest_buffer;
         Self {
             bytes: forecast.device_bytes,
             uneven_bytes: forecast.uneven_bytes,
             largest_buffer,
             largest_buffer_bytes,
-            largest_binding,
+            largest_allowed_bytes: largest_allowed,
             on_host,
         }
     }
@@ -180,7 +180,7 @@ impl Display for Device {
             f,
             "         about {even} {place}; with clusters, gaps or generous radii up to {uneven}"
         )?;
-        let [need, have] = [self.largest_buffer_bytes, self.largest_binding].map(bytes);
+        let [need, have] = [self.largest_buffer_bytes, self.largest_allowed_bytes].map(bytes);
         let name = self.largest_buffer;
         writeln!(f, "         largest buffer: {name} {need}, the adapter allows {have}")
     }
