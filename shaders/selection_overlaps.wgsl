@@ -63,22 +63,38 @@ fn add_links(h: u32, sphere: f32) {
                 entries = next_entries(&walk);
             }
         }
+        var kept = 0u;
         for (var i = 0u; i < size; i++) {
             let x = inside[i];
-            if precedes(h, x) && is_seen(center, near_curves, sphere, x) {
-                add_link(x, h);
-            }
+            inside[kept] = x;
+            kept += u32(precedes(h, x) && same_side(center.normal, candidates[x].normal));
+        }
+        if with_curves {
+            kept = keep_seen(center, near_curves, sphere, kept);
+        }
+        for (var i = 0u; i < kept; i++) {
+            add_link(inside[i], h);
         }
     }
 }
 
-/// Whether a candidate within the sphere of another one is on the same sheet.
-fn is_seen(center: Seen, near_curves: bool, sphere: f32, x: u32) -> bool {
-    if !same_side(center.normal, candidates[x].normal) {
-        return false;
+/// Keeps the listed candidates on the same sheet as the centre, and returns how many are left.
+fn keep_seen(center: Seen, near_curves: bool, sphere: f32, size: u32) -> u32 {
+    var meets_curves = near_curves | center.record != NONE;
+    for (var i = 0u; i < size; i++) {
+        meets_curves |= record_of_candidate(inside[i]) != NONE;
     }
-    let other = Seen(candidates[x].place.xyz, candidates[x].normal, record_of_candidate(x));
-    return sees(center, near_curves, sphere, other);
+    if !meets_curves {
+        return size;
+    }
+    var seen = 0u;
+    for (var i = 0u; i < size; i++) {
+        let x = inside[i];
+        let other = Seen(candidates[x].place.xyz, candidates[x].normal, record_of_candidate(x));
+        inside[seen] = x;
+        seen += u32(sees(center, near_curves, sphere, other));
+    }
+    return seen;
 }
 
 /// Too small a buffer is seen by the host in the counters, and the stage runs again.

@@ -32,9 +32,8 @@ fn count_members(p: u32) -> u32 {
 fn keep_consistent(p: u32, size: u32) -> u32 {
     let center = points[p];
     let frame = frame_of(p);
-    let seen = Seen(center.position, center.normal, record_of(p));
-    let near_curves = is_near_curves(center.position, center.radius);
     let inverse = 1.0 / center.radius;
+    var meets_curves = is_on_curve(p);
     var members = 0u;
     for (var i = 0u; i < size; i++) {
         let q = word(ID, i);
@@ -45,10 +44,8 @@ fn keep_consistent(p: u32, size: u32) -> u32 {
         let x = dot3(d, frame.e1);
         let y = dot3(d, frame.e2);
         let q2 = x * x + y * y;
-        var stays = q2 > 1e-12 * d2 & consistent(u, center.normal, normal);
-        if with_curves {
-            stays = stays && sees(seen, near_curves, center.radius, Seen(points[q].position, normal, record_of(q)));
-        }
+        let stays = q2 > 1e-12 * d2 & consistent(u, center.normal, normal);
+        meets_curves |= stays & is_on_curve(q);
         var scale = inverse;
         if accurate {
             // The geodesic projection q' (eq. 9).
@@ -63,7 +60,31 @@ fn keep_consistent(p: u32, size: u32) -> u32 {
         }
         members += u32(stays);
     }
+    if with_curves {
+        return keep_seen(p, members, meets_curves);
+    }
     return members;
+}
+
+/// Keeps the members that the centre sees, and returns how many are left. All are unless one of them or the centre lies on a curve, or
+/// there are curves between: a loop of its own, since what it asks costs much and few points need it.
+fn keep_seen(p: u32, members: u32, meets_curves: bool) -> u32 {
+    let radius = points[p].radius;
+    let center = Seen(points[p].position, points[p].normal, record_of(p));
+    let near_curves = is_near_curves(center.position, radius);
+    if !meets_curves & !near_curves {
+        return members;
+    }
+    var seen = 0u;
+    for (var i = 0u; i < members; i++) {
+        let q = word(ID, i);
+        let stays = sees(center, near_curves, radius, Seen(points[q].position, points[q].normal, record_of(q)));
+        for (var row = ID; row <= HEIGHT; row++) {
+            set_word(row, seen, word(row, i));
+        }
+        seen += u32(stays);
+    }
+    return seen;
 }
 
 /// Eq. 6, printed inverted: whether neither point lies in the cone of apex the other and axis n0 + n1.

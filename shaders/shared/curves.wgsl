@@ -5,9 +5,10 @@
 
 /// Whether the cloud has creases or boundaries. Without them nothing of this is read.
 override with_curves: bool = false;
+/// Whether there are creases among them. Boundaries have one side and hide nothing.
+override with_creases: bool = false;
 
-// Words of the table: a header, then records, segments, first entry of each cell and one more, entries of cells.
-const HEADER_WORDS: u32 = 16u;
+// Words of the table: of records, then of segments; after these come the first entry of each cell and one more, and the entries.
 const RECORD_WORDS: u32 = 24u;
 const SEGMENT_WORDS: u32 = 4u;
 
@@ -17,7 +18,7 @@ fn curve_vector(at: u32) -> vec3<f32> {
 
 /// First word of a record. The records of new points on curves come after those of the level.
 fn record_at(record: u32) -> u32 {
-    return HEADER_WORDS + RECORD_WORDS * record;
+    return RECORD_WORDS * record;
 }
 
 fn record_position(record: u32) -> vec3<f32> {

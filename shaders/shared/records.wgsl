@@ -70,6 +70,19 @@ struct Params {
     ring_entries: u32,
     around_entries: u32,
     mirror_links: u32,
+    /// Half of the longest crease segment.
+    longest_half: f32,
+    /// Points of a larger cosine between their normals lie on one side of every crease.
+    softest_crease: f32,
+    /// The grid of the crease segments, as that above.
+    segment_origin: vec3<f32>,
+    segment_inverse_cell: f32,
+    segment_bits: vec3<u32>,
+    segment_cell: f32,
+    /// Where the segments, their cells and the entries of these begin in the table of curves, in words.
+    segments_begin: u32,
+    segment_cells_begin: u32,
+    segment_entries_begin: u32,
 }
 
 /// What changes from dispatch to dispatch.

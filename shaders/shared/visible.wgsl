@@ -29,10 +29,10 @@ struct Seen {
 
 /// Whether there may be curves within a radius around a point.
 fn is_near_curves(position: vec3<f32>, radius: f32) -> bool {
-    if !with_curves || !separating_segments {
+    if !with_creases || !separating_segments {
         return false;
     }
-    var walk = segment_walk(position, (AROUND + 0.5) * radius + longest_half());
+    var walk = segment_walk(position, (AROUND + 0.5) * radius + params.longest_half);
     while !is_over(walk) {
         let entries = next_segments(&walk);
         if entries.x < entries.y {
@@ -89,7 +89,7 @@ fn side_of(record: u32, other: Seen) -> u32 {
     let u = d * (1.0 / sqrt(d2));
     let first = record_first(record);
     let sides = record_sides(record);
-    if sides == 1u {
+    if sides == 1u || !with_creases {
         let like = dot3(other.normal, record_normal(record)) > LIKE;
         return select(NONE, record, like && in_wedge(record, d));
     }
@@ -139,11 +139,11 @@ fn is_joined(record: u32, other: u32) -> bool {
 }
 
 fn is_fenced(center: Seen, other: Seen, d: vec3<f32>, d2: f32) -> bool {
-    if dot3(center.normal, other.normal) > softest_crease() {
+    if dot3(center.normal, other.normal) > params.softest_crease {
         return false;
     }
     let middle = center.position + d * 0.5;
-    let reach = AROUND * sqrt(d2) + longest_half();
+    let reach = AROUND * sqrt(d2) + params.longest_half;
     var walk = segment_walk(middle, reach);
     while !is_over(walk) {
         let entries = next_segments(&walk);

@@ -4,7 +4,7 @@ use crate::clouds::{describe, small, small_outlined, variants};
 use crate::tolerance::{EXACT, Tolerance};
 use std::collections::HashMap;
 use std::sync::{LazyLock, Mutex, MutexGuard, OnceLock};
-use surfine::curves::table;
+use surfine::curves::{Curves, Table, table};
 use surfine::records::{Candidate, Counters, Fan, LEVEL_BITS, Params, Point};
 use surfine::shaders::SHADERS;
 use surfine::testing::{Buffer, Commands, Uniforms, constants, read};
@@ -107,7 +107,7 @@ impl Device {
 
     /// Runs one kernel once.
     pub(crate) fn run(&mut self, run: Run<'_>, buffers: &[&Buffer]) {
-        let constants = constants(run.refine, run.params.records > 0);
+        let constants = constants(run.refine, run.curves);
         let key = (run.kernel.to_owned(), constants.iter().map(|c| c.1 == 1.0).collect());
         let gpu = self.refiner.gpu();
         let kernel = self.kernels.entry(key).or_insert_with(|| {
@@ -186,6 +186,12 @@ impl Step {
 
     /// The table of creases and boundaries.
     pub(crate) fn curves(&self) -> Vec<u32> {
+        let words = self.table().words;
+        // No buffer is empty.
+        if words.is_empty() { vec![0] } else { words }
+    }
+
+    fn table(&self) -> Table {
         table(self.features().unwrap_or(&Features::default()), &self.level.curve_points)
     }
 
@@ -204,7 +210,7 @@ impl Step {
             around_entries: (state.conflicts.around.items.len()
                 + 2 * state.conflicts.before.items.len()) as u32,
             mirror_links: MIRROR_LINKS as u32,
-            ..Params::new(&self.refine).with_grid(&state.grid.shape)
+            ..Params::new(&self.refine).with_grid(&state.grid.shape).with_curves(&self.table())
         }
     }
 
@@ -215,7 +221,8 @@ impl Step {
         words: [u32; 4],
         invocations: usize,
     ) -> Run<'a> {
-        Run { kernel, refine: &self.refine, params: self.params(), words, invocations }
+        let curves = self.features().map_or(Curves::None, Curves::of);
+        Run { kernel, refine: &self.refine, curves, params: self.params(), words, invocations }
     }
 
     pub(crate) fn points(&self) -> Vec<Point> {
@@ -338,6 +345,7 @@ pub(crate) const MIRROR_LINKS: usize = 1 << 16;
 pub(crate) struct Run<'a> {
     pub kernel: &'a str,
     pub refine: &'a RefineParams,
+    pub curves: Curves,
     pub params: Params,
     pub words: [u32; 4],
     pub invocations: usize,

@@ -3,6 +3,7 @@
 use crate::clouds::{Cloud, describe, variants, whole, whole_outlined};
 use crate::harness::{FREE, device};
 use crate::refine::{must_be_close, must_be_identical};
+use surfine::curves::Curves;
 use surfine::records::{Candidate, Params};
 use surfine::shaders::SHADERS;
 use surfine::testing::{Buffer, Commands, Uniforms, constants, read};
@@ -32,7 +33,7 @@ fn bindings(gpu: &Gpu) -> u32 {
 
 fn kernel(gpu: &Gpu, name: &str) -> Kernel {
     let shader = SHADERS.iter().find(|s| s.name == name).expect("it is in the table");
-    Kernel::new(gpu, shader, &constants(&RefineParams::default(), false)).expect("it compiles")
+    Kernel::new(gpu, shader, &constants(&RefineParams::default(), Curves::None)).expect("it compiles")
 }
 
 /// Runs a kernel alone.

@@ -3,32 +3,59 @@
 use crate::buffers::Buffer;
 use crate::{Error, Gpu};
 use surfine_features::{CurvePoint, Features, Record};
-use surfine_points::Vec3;
+use surfine_points::{GridShape, Vec3};
 
-/// Words of the header.
-pub const HEADER_WORDS: usize = 16;
+/// What curves a level has: kernels do without the rest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Curves {
+    /// None.
+    None,
+    /// Boundaries alone.
+    Boundaries,
+    /// Creases, and boundaries too.
+    Creases,
+}
+
+impl Curves {
+    /// What there is.
+    pub fn of(features: &Features) -> Self {
+        let has_creases = features.segments.iter().any(|segment| !segment.is_boundary());
+        match (features.is_empty(), has_creases) {
+            (true, _) => Self::None,
+            (false, false) => Self::Boundaries,
+            (false, true) => Self::Creases,
+        }
+    }
+}
+
 /// Words of a record.
 pub const RECORD_WORDS: usize = 24;
 /// Words of a segment.
 pub const SEGMENT_WORDS: usize = 4;
 
-/// The table: a header, the records (those of new points last), the segments, and these by cell. A header of zeros where
-/// there are no curves.
-pub fn table(features: &Features, new: &[CurvePoint]) -> Vec<u32> {
-    if features.is_empty() {
-        return vec![0; HEADER_WORDS];
-    }
-    let (grid, reach) = features.segment_grid();
-    let segments = HEADER_WORDS + RECORD_WORDS * features.records.len();
+/// The curves of a step.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// The records (those of new points last), the segments, and crease segments by cell: the first entry of each cell and one more,
+    /// then the entries.
+    pub words: Vec<u32>,
+    /// The grid of the crease segments.
+    pub shape: GridShape,
+    /// Half of the longest of them.
+    pub longest_half: f32,
+    /// Points of a larger cosine between their normals lie on one side of every crease.
+    pub softest_crease: f32,
+    /// Where segments, cells and entries begin, in words.
+    pub begins: [u32; 3],
+}
+
+/// The table of a level, with the new points on its curves.
+pub fn table(features: &Features, new: &[CurvePoint]) -> Table {
+    let (grid, longest_half) = features.segment_grid();
+    let segments = RECORD_WORDS * features.records.len();
     let starts = segments + SEGMENT_WORDS * features.segments.len();
+    let begins = [segments, starts, starts + grid.starts.len()].map(|at| at as u32);
     let mut words: Vec<u32> = Vec::new();
-    words.extend(bits(grid.shape.origin));
-    words.push((1.0 / grid.shape.cell).to_bits());
-    words.extend(grid.shape.bits);
-    words.extend([grid.shape.cell, reach].map(f32::to_bits));
-    words.extend([segments, starts, starts + grid.starts.len()].map(|at| at as u32));
-    words.push(features.softest().to_bits());
-    words.resize(HEADER_WORDS, 0);
     for (i, record) in features.records.iter().enumerate() {
         let new = i.checked_sub(features.old).map(|rank| &new[rank]);
         words.extend(record_words(record, new));
@@ -36,7 +63,8 @@ pub fn table(features: &Features, new: &[CurvePoint]) -> Vec<u32> {
     words.extend(features.segments.iter().flat_map(|segment| segment.sides.into_iter().flatten()));
     words.extend(grid.starts);
     words.extend(grid.items);
-    words
+    let softest_crease = features.softest();
+    Table { words, shape: grid.shape, longest_half, softest_crease, begins }
 }
 
 fn record_words(record: &Record, new: Option<&CurvePoint>) -> [u32; RECORD_WORDS] {
@@ -62,15 +90,15 @@ fn bits(v: Vec3) -> [u32; 3] {
     v.to_array().map(f32::to_bits)
 }
 
-/// Writes the table of a step into its buffer and returns its bytes.
+/// Writes the table of a step into its buffer.
 pub(crate) fn upload(
     gpu: &Gpu,
     buffer: &mut Buffer,
     features: &Features,
     new: &[CurvePoint],
-) -> Result<u64, Error> {
-    let words = table(features, new);
-    buffer.reserve(gpu, 4 * words.len() as u64)?;
-    gpu.queue.write_buffer(buffer.raw(), 0, bytemuck::cast_slice(&words));
-    Ok(4 * words.len() as u64)
+) -> Result<Table, Error> {
+    let table = table(features, new);
+    buffer.reserve(gpu, 4 * table.words.len() as u64)?;
+    gpu.queue.write_buffer(buffer.raw(), 0, bytemuck::cast_slice(&table.words));
+    Ok(table)
 }

@@ -1,5 +1,6 @@
 //! Records that kernels and host share: mirrors of `shaders/shared/records.wgsl`.
 
+use crate::curves::Table;
 use bytemuck::{Pod, Zeroable};
 use surfine_points::{GridShape, RefineParams};
 
@@ -68,7 +69,16 @@ pub struct Params {
     pub ring_entries: u32,
     pub around_entries: u32,
     pub mirror_links: u32,
-    pub unused: [u32; 2],
+    pub longest_half: f32,
+    pub softest_crease: f32,
+    pub segment_origin: [f32; 3],
+    pub segment_inverse_cell: f32,
+    pub segment_bits: [u32; 3],
+    pub segment_cell: f32,
+    pub segments_begin: u32,
+    pub segment_cells_begin: u32,
+    pub segment_entries_begin: u32,
+    pub unused: u32,
 }
 
 impl Params {
@@ -91,6 +101,24 @@ impl Params {
             inverse_cell: 1.0 / shape.cell,
             bits: shape.bits,
             cell: shape.cell,
+            ..self
+        }
+    }
+
+    /// The same with the crease segments of a step.
+    #[must_use]
+    pub fn with_curves(self, table: &Table) -> Self {
+        let [segments_begin, segment_cells_begin, segment_entries_begin] = table.begins;
+        Self {
+            longest_half: table.longest_half,
+            softest_crease: table.softest_crease,
+            segment_origin: table.shape.origin.to_array(),
+            segment_inverse_cell: 1.0 / table.shape.cell,
+            segment_bits: table.shape.bits,
+            segment_cell: table.shape.cell,
+            segments_begin,
+            segment_cells_begin,
+            segment_entries_begin,
             ..self
         }
     }

@@ -1,7 +1,7 @@
 //! The loop over levels (section 2 of the paper) on the device.
 
 use crate::buffers::{self, Buffer};
-use crate::curves;
+use crate::curves::{self, Curves};
 use crate::forecast::{Forecast, check_step};
 use crate::pace::Pace;
 use crate::profile::{KernelTime, Profile};
@@ -116,7 +116,7 @@ impl Refiner {
     /// # Errors
     /// A kernel is refused.
     pub fn prepare(&mut self, params: &RefineParams) -> Result<(), Error> {
-        self.compile(constants(params, false))
+        self.compile(constants(params, Curves::None))
     }
 
     /// [`Refiner::prepare`] for clouds with creases or boundaries, which have kernels of their own: else these are compiled when
@@ -125,7 +125,8 @@ impl Refiner {
     /// # Errors
     /// A kernel is refused.
     pub fn prepare_curves(&mut self, params: &RefineParams) -> Result<(), Error> {
-        self.compile(constants(params, true))
+        self.compile(constants(params, Curves::Boundaries))?;
+        self.compile(constants(params, Curves::Creases))
     }
 
     fn compile(&mut self, constants: Constants) -> Result<(), Error> {
@@ -289,9 +290,9 @@ impl Refiner {
             if features.records.len() > MOST_RECORDS {
                 return Err(Invalid::TooMany(features.records.len()).into());
             }
-            curves::upload(&self.gpu, &mut self.buffers.curves, &features, &new)?;
-            let (old, new_count) = (features.old as u32, new.len() as u32);
-            let on_curves = OnCurves { records: old, new: new_count };
+            let table = curves::upload(&self.gpu, &mut self.buffers.curves, &features, &new)?;
+            let step = step.with_curves(&table);
+            let on_curves = OnCurves::of(&features, new.len());
             let earlier = count - records.len();
             let report = self.run_step(params, step, rings, on_curves, earlier, &mut clock);
             let mut report = report.await?;
@@ -329,7 +330,7 @@ impl Refiner {
         params: Params,
         on_curves: OnCurves,
     ) -> Result<Step<'_>, Error> {
-        let constants = constants(refine, on_curves.records > 0);
+        let constants = constants(refine, on_curves.curves);
         self.compile(constants.clone())?;
         let Self { gpu, kernels, uniforms, buffers, scan, sizing, .. } = self;
         let kernels = kernels.iter().find(|(c, _)| *c == constants);
@@ -360,8 +361,9 @@ impl Refiner {
         features: &mut Features,
         clock: &mut Clock<'_, P>,
     ) -> Result<Option<Rings>, Error> {
-        curves::upload(&self.gpu, &mut self.buffers.curves, features, &[])?;
-        let on_curves = OnCurves { records: features.old as u32, new: 0 };
+        let table = curves::upload(&self.gpu, &mut self.buffers.curves, features, &[])?;
+        let params = params.with_curves(&table);
+        let on_curves = OnCurves::of(features, 0);
         let mut step = self.step(refine, params, on_curves)?;
         clock.start("grid");
         step.grid_points().await?;
@@ -498,11 +500,20 @@ fn columns(points: &[Point]) -> (Vec<Vec3>, Vec<Vec3>, Vec<f32>) {
 /// Records that fit beside the level in a word of a point.
 const MOST_RECORDS: usize = (1 << (32 - LEVEL_BITS)) - 2;
 
-/// How many records there are on creases and boundaries, and how many new ones.
+/// What curves a step has.
 #[derive(Clone, Copy)]
 struct OnCurves {
+    curves: Curves,
+    /// Records before the step.
     records: u32,
+    /// New points on them.
     new: u32,
+}
+
+impl OnCurves {
+    fn of(features: &Features, new: usize) -> Self {
+        Self { curves: Curves::of(features), records: features.old as u32, new: new as u32 }
+    }
 }
 
 /// The rings of the first step.

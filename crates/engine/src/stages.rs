@@ -5,6 +5,7 @@
 
 use crate::buffers::Buffer;
 use crate::commands::Commands;
+use crate::curves::Curves;
 use crate::kernel::Kernel;
 use crate::records::{Candidate, Counters, Fan, Params, Point};
 use crate::scan::Scan;
@@ -43,13 +44,14 @@ impl Default for Sizing {
 /// Values of the kernels' `override`s.
 pub type Constants = Vec<(&'static str, f64)>;
 
-/// The values of the kernels' `override`s that parameters ask for, for clouds with creases or boundaries or without.
-pub fn constants(params: &RefineParams, with_curves: bool) -> Constants {
+/// The values of the kernels' `override`s that parameters ask for, for levels with such curves.
+pub fn constants(params: &RefineParams, curves: Curves) -> Constants {
     let accurate = params.effective_neighborhood() == Neighborhood::Accurate;
     let plain_angle = params.effective_plain_angle();
     let modes =
         [("accurate", accurate), ("simplified", params.simplified), ("plain_angle", plain_angle)];
-    let modes = modes.into_iter().chain([("with_curves", with_curves)]);
+    let kinds = [("with_curves", curves != Curves::None), ("with_creases", curves == Curves::Creases)];
+    let modes = modes.into_iter().chain(kinds);
     // The host splits the curves.
     let rules = params.effective_rules();
     let rules = rules.named().into_iter().filter(|(name, _)| *name != "even_steps");
