@@ -92,7 +92,8 @@ fn keep(input: &PointSet, refined: Refinement) -> Folded {
 
 /// Whether every record is a point, and no property says what it is.
 fn is_plain(input: &PointSet, features: &Features, marks: Option<&str>) -> bool {
-    features.is_empty() && marks.is_none() && !has_further_normals(input)
+    let is_one_record = |record: &crate::Record| record.is_boundary();
+    features.records.iter().all(is_one_record) && marks.is_none() && !has_further_normals(input)
 }
 
 /// Which record is which point.

@@ -182,15 +182,21 @@ impl<'a> View<'a> {
     pub(crate) fn new(level: &'a Level, center: Seen, radius: f32, rules: Rules) -> Option<Self> {
         let curves = level.curves.as_ref()?;
         let mut fences = Vec::new();
-        if rules.separating_segments {
+        if rules.separating_segments && !curves.grid.items.is_empty() {
             let reach = (AROUND + 0.5) * radius + curves.reach;
             curves.grid.visit_ball(center.position, reach, |s, _| fences.push(s));
         }
         Some(Self { curves, center, fences, radius, rules })
     }
 
-    /// Whether it sees a point within the radius.
+    /// Whether it sees a point within the radius. Off the curves that is easily said.
+    #[inline]
     pub(crate) fn sees(&self, other: Seen) -> bool {
+        let is_smooth = self.center.record == NONE && other.record == NONE;
+        (is_smooth && self.fences.is_empty()) || self.sees_past_curves(other)
+    }
+
+    fn sees_past_curves(&self, other: Seen) -> bool {
         let curves = self.curves;
         let d = other.position - self.center.position;
         let d2 = d.dot(d);
