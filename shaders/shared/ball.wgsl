@@ -34,6 +34,7 @@ fn keep_consistent(p: u32, size: u32) -> u32 {
     let frame = frame_of(p);
     let inverse = 1.0 / center.radius;
     var meets_curves = is_on_curve(p);
+    var turns = false;
     var members = 0u;
     for (var i = 0u; i < size; i++) {
         let q = word(ID, i);
@@ -46,6 +47,7 @@ fn keep_consistent(p: u32, size: u32) -> u32 {
         let q2 = x * x + y * y;
         let stays = q2 > 1e-12 * d2 & consistent(u, center.normal, normal);
         meets_curves |= stays & is_on_curve(q);
+        turns |= stays & with_creases & dot3(center.normal, normal) <= params.softest_crease;
         var scale = inverse;
         if accurate {
             // The geodesic projection q' (eq. 9).
@@ -61,30 +63,45 @@ fn keep_consistent(p: u32, size: u32) -> u32 {
         members += u32(stays);
     }
     if with_curves {
-        return keep_seen(p, members, meets_curves);
+        return keep_seen(p, members, meets_curves, turns);
     }
     return members;
 }
 
 /// Keeps the members that the centre sees, and returns how many are left. All are unless one of them or the centre lies on a curve, or
-/// there are curves between: a loop of its own, since what it asks costs much and few points need it.
-fn keep_seen(p: u32, members: u32, meets_curves: bool) -> u32 {
+/// one turns away as far as across a crease and there are creases around: a loop of its own, since what it asks costs much and few
+/// points need it.
+fn keep_seen(p: u32, members: u32, meets_curves: bool, turns: bool) -> u32 {
     let radius = points[p].radius;
     let center = Seen(points[p].position, points[p].normal, record_of(p));
-    let near_curves = is_near_curves(center.position, radius);
-    if !meets_curves & !near_curves {
-        return members;
-    }
-    var seen = 0u;
-    for (var i = 0u; i < members; i++) {
-        let q = word(ID, i);
-        let stays = sees(center, near_curves, radius, Seen(points[q].position, points[q].normal, record_of(q)));
-        for (var row = ID; row <= HEIGHT; row++) {
-            set_word(row, seen, word(row, i));
+    var seen = members;
+    if meets_curves {
+        seen = 0u;
+        for (var i = 0u; i < members; i++) {
+            seen = keep_if(sides_agree(center, radius, seen_member(i)), i, seen);
         }
-        seen += u32(stays);
+    }
+    if turns && is_near_curves(center.position, radius) {
+        let asked = seen;
+        seen = 0u;
+        for (var i = 0u; i < asked; i++) {
+            seen = keep_if(!is_fenced(center, radius, seen_member(i)), i, seen);
+        }
     }
     return seen;
+}
+
+fn seen_member(i: u32) -> Seen {
+    let q = word(ID, i);
+    return Seen(points[q].position, points[q].normal, record_of(q));
+}
+
+/// Moves member i behind those that are kept, and says how many these are then.
+fn keep_if(stays: bool, i: u32, kept: u32) -> u32 {
+    for (var row = ID; row <= HEIGHT; row++) {
+        set_word(row, kept, word(row, i));
+    }
+    return kept + u32(stays);
 }
 
 /// Eq. 6, printed inverted: whether neither point lies in the cone of apex the other and axis n0 + n1.

@@ -44,30 +44,26 @@ fn is_near_curves(position: vec3<f32>, radius: f32) -> bool {
 
 /// Whether a point sees another one within its radius. `near_curves` as above.
 fn sees(center: Seen, near_curves: bool, radius: f32, other: Seen) -> bool {
-    if !with_curves {
-        return true;
-    }
+    return !with_curves || (sides_agree(center, radius, other) && !(near_curves && is_fenced(center, radius, other)));
+}
+
+/// Whether each of two points, if it lies on a curve, has the other one on its side.
+fn sides_agree(center: Seen, radius: f32, other: Seen) -> bool {
     let d = other.position - center.position;
-    let d2 = dot3(d, d);
+    let are_both_on_curves = center.record != NONE && other.record != NONE;
     // In the same place there is nothing between.
-    if !is_apart(d2, radius) {
-        return center.record == NONE || other.record == NONE;
+    if !is_apart(dot3(d, d), radius) {
+        return !are_both_on_curves;
     }
     if center.record != NONE && !in_wedge(center.record, d) {
         return false;
     }
-    if center.record != NONE && other.record != NONE {
-        if !records_see(center, other) {
-            return false;
-        }
-    } else if center.record != NONE {
-        if side_of(center.record, other) != center.record {
-            return false;
-        }
-    } else if other.record != NONE && side_of(other.record, center) != other.record {
-        return false;
+    let is_on_own = center.record == NONE || side_of(center.record, other) == center.record;
+    let is_on_other = other.record == NONE || side_of(other.record, center) == other.record;
+    if are_both_on_curves {
+        return records_see(center.record, other.record, is_on_own && is_on_other);
     }
-    return !near_curves || !is_fenced(center, other, d, d2);
+    return is_on_own && is_on_other;
 }
 
 /// Whether a direction lies between the curves that bound a record's sheet, or a little beyond.
@@ -108,21 +104,19 @@ fn side_of(record: u32, other: Seen) -> u32 {
     return select(NONE, best, valid || !valid_sides);
 }
 
-/// Whether records of two points see each other. Those next to each other on a curve do on their own side only.
-fn records_see(a: Seen, b: Seen) -> bool {
-    if record_first(a.record) == record_first(b.record) {
+/// Whether records of two points see each other; `agree` says whether each lies on the other's side. Those next to each other on a
+/// curve do on their own side only.
+fn records_see(a: u32, b: u32, agree: bool) -> bool {
+    if record_first(a) == record_first(b) {
         return false;
     }
-    if is_joined(a.record, b.record) || is_joined(b.record, a.record) {
-        return any(record_partners(a.record) == vec2(b.record)) || any(record_partners(b.record) == vec2(a.record));
+    if is_joined(a, b) || is_joined(b, a) {
+        return any(record_partners(a) == vec2(b)) || any(record_partners(b) == vec2(a));
     }
-    if side_of(a.record, b) != a.record || side_of(b.record, a) != b.record {
-        return false;
-    }
-    let d = record_position(b.record) - record_position(a.record);
+    let d = record_position(b) - record_position(a);
     let u = d * (1.0 / sqrt(dot3(d, d)));
-    return (record_sides(a.record) == 1u || dot3(u, record_conormal(a.record)) > CREASE_BEHIND)
-        && (record_sides(b.record) == 1u || -dot3(u, record_conormal(b.record)) > CREASE_BEHIND);
+    return agree && (record_sides(a) == 1u || dot3(u, record_conormal(a)) > CREASE_BEHIND)
+        && (record_sides(b) == 1u || -dot3(u, record_conormal(b)) > CREASE_BEHIND);
 }
 
 /// Whether a side of the one's point is next to the other's point on a curve.
@@ -138,8 +132,11 @@ fn is_joined(record: u32, other: u32) -> bool {
     return false;
 }
 
-fn is_fenced(center: Seen, other: Seen, d: vec3<f32>, d2: f32) -> bool {
-    if dot3(center.normal, other.normal) > params.softest_crease {
+/// Whether a crease runs between a point and another one within its radius.
+fn is_fenced(center: Seen, radius: f32, other: Seen) -> bool {
+    let d = other.position - center.position;
+    let d2 = dot3(d, d);
+    if dot3(center.normal, other.normal) > params.softest_crease || !is_apart(d2, radius) {
         return false;
     }
     let middle = center.position + d * 0.5;
