@@ -33,7 +33,8 @@ fn bindings(gpu: &Gpu) -> u32 {
 
 fn kernel(gpu: &Gpu, name: &str) -> Kernel {
     let shader = SHADERS.iter().find(|s| s.name == name).expect("it is in the table");
-    Kernel::new(gpu, shader, &constants(&RefineParams::default(), Curves::None)).expect("it compiles")
+    Kernel::new(gpu, shader, &constants(&RefineParams::default(), Curves::None))
+        .expect("it compiles")
 }
 
 /// Runs a kernel alone.

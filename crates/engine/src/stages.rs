@@ -50,7 +50,8 @@ pub fn constants(params: &RefineParams, curves: Curves) -> Constants {
     let plain_angle = params.effective_plain_angle();
     let modes =
         [("accurate", accurate), ("simplified", params.simplified), ("plain_angle", plain_angle)];
-    let kinds = [("with_curves", curves != Curves::None), ("with_creases", curves == Curves::Creases)];
+    let kinds =
+        [("with_curves", curves != Curves::None), ("with_creases", curves == Curves::Creases)];
     let modes = modes.into_iter().chain(kinds);
     // The host splits the curves.
     let rules = params.effective_rules();

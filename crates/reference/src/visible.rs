@@ -193,30 +193,34 @@ impl<'a> View<'a> {
     #[inline]
     pub(crate) fn sees(&self, other: Seen) -> bool {
         let is_smooth = self.center.record == NONE && other.record == NONE;
-        (is_smooth && self.fences.is_empty()) || self.sees_past_curves(other)
+        (is_smooth && self.fences.is_empty()) || (self.sides_agree(other) && !self.is_fenced(other))
     }
 
-    fn sees_past_curves(&self, other: Seen) -> bool {
+    /// Whether each of two points, if it lies on a curve, has the other one on its side.
+    fn sides_agree(&self, other: Seen) -> bool {
+        let d = other.position - self.center.position;
+        // In the same place there is nothing between.
+        if !is_apart(d.dot(d), self.radius) {
+            return self.center.record == NONE || other.record == NONE;
+        }
+        let Self { curves, rules, .. } = *self;
+        match (self.center.record, other.record) {
+            (NONE, NONE) => true,
+            (r, NONE) => in_wedge(curves.record(r), d) && curves.side(r, other, rules) == r,
+            (NONE, r) => curves.side(r, self.center, rules) == r,
+            (r, _) => {
+                in_wedge(curves.record(r), d) && curves.records_see(self.center, other, rules)
+            }
+        }
+    }
+
+    /// Whether a crease runs between the point and another one within the radius.
+    fn is_fenced(&self, other: Seen) -> bool {
         let curves = self.curves;
         let d = other.position - self.center.position;
         let d2 = d.dot(d);
-        // In the same place there is nothing between.
-        if !is_apart(d2, self.radius) {
-            return self.center.record == NONE || other.record == NONE;
-        }
-        let sides_agree = match (self.center.record, other.record) {
-            (NONE, NONE) => true,
-            (r, NONE) => in_wedge(curves.record(r), d) && curves.side(r, other, self.rules) == r,
-            (NONE, r) => curves.side(r, self.center, self.rules) == r,
-            (r, _) => {
-                in_wedge(curves.record(r), d) && curves.records_see(self.center, other, self.rules)
-            }
-        };
-        sides_agree && !self.is_fenced(curves, other, d, d2)
-    }
-
-    fn is_fenced(&self, curves: &Curves, other: Seen, d: Vec3, d2: f32) -> bool {
-        if self.center.normal.dot(other.normal) > curves.softest {
+        let turns = self.center.normal.dot(other.normal) <= curves.softest;
+        if !turns || !is_apart(d2, self.radius) {
             return false;
         }
         let middle = self.center.position + d * 0.5;
