@@ -2,6 +2,7 @@
 
 use crate::clouds::{whole, whole_outlined};
 use crate::harness::device;
+use crate::windows::{bindings, small};
 use std::time::Duration;
 use surfine::testing::{Sizing, read};
 use surfine::{
@@ -82,6 +83,27 @@ fn slices_give_the_bytes_of_a_whole_run() {
             assert!(calls > least, "{calls} calls");
             assert!(contents(device.gpu(), &result) == expected, "{params:?}, {calls} calls");
         }
+    }
+}
+
+#[test]
+fn slices_of_buffers_in_windows_give_the_bytes_of_a_whole_run() {
+    let gpu = small(wgpu::Features::PASSTHROUGH_SHADERS);
+    let (points, params) = cases().swap_remove(1);
+    // Kernels for the windows are compiled in slices, then once more for the whole run.
+    let mut run = own_refiner(&gpu).begin(points.clone(), params.clone());
+    let sliced = drive(&mut run, &[TINY, Duration::from_micros(300)]);
+    let whole = own_refiner(&gpu).refine_on_device(&points, &params, &mut |_| ());
+    match (sliced, whole) {
+        (Ok((sliced, _)), Ok(whole)) => {
+            assert!(contents(&gpu, &sliced) == contents(&gpu, &whole));
+        }
+        // Ten storage buffers leave none for further windows.
+        (Err(sliced), Err(whole)) => {
+            assert!(bindings(&gpu) < 32, "{whole}");
+            assert_eq!(sliced.to_string(), whole.to_string());
+        }
+        (sliced, whole) => panic!("{:?} and {:?}", sliced.err(), whole.err()),
     }
 }
 
