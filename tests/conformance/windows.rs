@@ -109,7 +109,10 @@ fn plain_kernels_have_windows_too() {
         let found: Vec<u32> = read(&gpu, new_indices.raw(), count + 1).expect("it is alive");
         assert_eq!(found[1..], expected);
     } else {
-        assert!(bindings(&gpu) < 32, "three windows are too many only where hardly any is to spare");
+        assert!(
+            bindings(&gpu) < 32,
+            "three windows are too many only where hardly any is to spare"
+        );
     }
 }
 
