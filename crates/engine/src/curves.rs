@@ -61,8 +61,11 @@ pub fn table(features: &Features, new: &[CurvePoint]) -> Table {
         words.extend(record_words(record, new));
     }
     words.extend(features.segments.iter().flat_map(|segment| segment.sides.into_iter().flatten()));
-    words.extend(grid.starts);
-    words.extend(grid.items);
+    // Without segments nobody asks.
+    if !grid.items.is_empty() {
+        words.extend(grid.starts);
+        words.extend(grid.items);
+    }
     let softest_crease = features.softest();
     Table { words, shape: grid.shape, longest_half, softest_crease, begins }
 }
