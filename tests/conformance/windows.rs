@@ -15,10 +15,16 @@ const BINDING: u64 = 100_000;
 /// A device with small bindings.
 pub(crate) fn small(features: wgpu::Features) -> Gpu {
     let adapter = surfine::choose_adapter(None).expect("the suite has an adapter");
-    let limits = adapter.limits();
+    let usual = adapter.limits();
+    let required_limits = wgpu::Limits {
+        max_storage_buffer_binding_size: BINDING,
+        // Hardware allows so many that nothing would ever be too long.
+        max_storage_buffers_per_shader_stage: usual.max_storage_buffers_per_shader_stage.min(32),
+        ..usual
+    };
     let descriptor = wgpu::DeviceDescriptor {
         required_features: adapter.features() & features,
-        required_limits: wgpu::Limits { max_storage_buffer_binding_size: BINDING, ..limits },
+        required_limits,
         ..Default::default()
     };
     let opened = pollster::block_on(adapter.request_device(&descriptor));
@@ -70,15 +76,18 @@ fn check(refiner: &mut Refiner, cloud: &Cloud, params: &RefineParams, is_exact: 
 fn windows_give_the_bytes_of_whole_buffers() {
     let is_exact = device().is_exact();
     let gpu = small(wgpu::Features::PASSTHROUGH_SHADERS);
-    let has_more = bindings(&gpu) >= 32;
+    let bindings = bindings(&gpu);
     let mut refiner = Refiner::with_gpu(gpu).expect("the kernels compile");
     let cloud = |i| whole().swap_remove(i).0;
     let cube = whole_outlined().swap_remove(0).0;
-    if !has_more {
-        // Ten storage buffers a stage leave none for further windows.
-        let failure =
-            refiner.refine(&cube.points, &RefineParams { levels: 3, ..Default::default() });
-        assert!(matches!(failure, Err(Error::TooLarge { .. })), "{failure:?}");
+    if bindings < 32 {
+        // Ten storage buffers a stage leave none for further windows, a few more may be too few.
+        let params = RefineParams { levels: 3, ..Default::default() };
+        match refiner.refine(&cube.points, &params) {
+            Err(Error::TooLarge { .. } | Error::Limit { .. } | Error::Bindings { .. }) => (),
+            Err(other) => panic!("{other}"),
+            Ok(_) => assert!(bindings > 10, "{bindings} bindings do not suffice"),
+        }
         return;
     }
     let [accurate, _, simplified, by_gaps, ..] = variants();

@@ -310,16 +310,25 @@ fn refined_points_are_drawn_from_the_device() {
     }
 }
 
-#[test]
-fn a_cloud_in_several_buffers_is_drawn_like_one() {
-    // A device whose bindings hold 128 points, or 85 with colours.
+/// A device whose bindings hold so many bytes.
+fn small_device(binding: u64) -> surfine::Gpu {
     let adapter = surfine::choose_adapter(None).unwrap_or_else(|e| panic!("{e}"));
     let limits =
-        surfine::wgpu::Limits { max_storage_buffer_binding_size: 4096, ..adapter.limits() };
-    let descriptor =
-        surfine::wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
+        surfine::wgpu::Limits { max_storage_buffer_binding_size: binding, ..adapter.limits() };
+    let descriptor = surfine::wgpu::DeviceDescriptor {
+        // Software drivers take longer to compile the kernels without.
+        required_features: adapter.features() & surfine::wgpu::Features::PASSTHROUGH_SHADERS,
+        required_limits: limits,
+        ..Default::default()
+    };
     let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).unwrap();
-    let gpu = surfine::Gpu::from_device(device, queue);
+    surfine::Gpu::from_device(device, queue)
+}
+
+#[test]
+fn a_cloud_in_several_buffers_is_drawn_like_one() {
+    // 128 points, or 85 with colours.
+    let gpu = small_device(4096);
     let small = surfine_render::Renderer::new(&gpu).unwrap();
     let painted = colored(&[(1.0, Vec3::ZERO), (0.3, Vec3::new(0.2, 0.3, 1.6))]);
     for (name, scene) in [("plain", Scene::new(&sphere(2))), ("painted", painted)] {
@@ -329,6 +338,29 @@ fn a_cloud_in_several_buffers_is_drawn_like_one() {
         let picture = picture.unwrap_or_else(|e| panic!("{name}: {e}"));
         assert_alike(&format!("several-buffers-{name}"), &Painter::Gpu.draw(&scene), &picture);
     }
+}
+
+#[test]
+fn refined_points_longer_than_a_binding_are_drawn() {
+    let points = sample(Shape::Sphere, Sampling::BlueNoise, 1000, 1);
+    let params = RefineParams { levels: 1, ..RefineParams::default() };
+    let gpu = small_device(32_000);
+    let mut refiner = Refiner::with_gpu(gpu.clone()).unwrap();
+    let long = match refiner.refine_on_device(&points, &params, &mut |_| ()) {
+        Ok(long) => long,
+        // Kernels may have too few bindings for so small ones.
+        Err(e) => {
+            assert!(gpu.device.limits().max_storage_buffers_per_shader_stage < 32, "{e}");
+            return;
+        }
+    };
+    assert!(long.points.size() > 2 * 32_000);
+    let mut refiner = Refiner::with_gpu(device().gpu.clone()).unwrap();
+    let scene = Scene::new(&refiner.refine(&points, &params).unwrap().points);
+    let Scene { camera, style, size, .. } = &scene;
+    let small = surfine_render::Renderer::new(&gpu).unwrap();
+    let picture = small.draw(&DeviceSplats::from(&long), camera, style, *size).unwrap();
+    assert_alike("several windows", &Painter::Gpu.draw(&scene), &picture);
 }
 
 /// An even lattice on the plane z = 0, with the signs of its zeros chosen by `zero`.

@@ -1,7 +1,7 @@
 //! Device memory that grows and is used again.
 
 use crate::gpu::Mapped;
-use crate::windows::window_bytes;
+use crate::windows::{RECORDS, window_bytes};
 use crate::{Error, Gpu};
 use std::num::NonZeroU64;
 
@@ -28,7 +28,9 @@ impl Buffer {
         if bytes > have {
             return Err(Error::Limit { what: label, need: bytes, have, adapter: gpu.name.clone() });
         }
-        let size = bytes.next_multiple_of(16).max(64);
+        // Each of several windows holds whole records, so that the last one has at least one.
+        let unit = if bytes > gpu.largest_binding() { RECORDS } else { 16 };
+        let size = bytes.next_multiple_of(unit).max(64);
         let raw = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
             size,
@@ -103,7 +105,7 @@ impl Buffer {
     }
 }
 
-/// A quarter more than asked for, as far as the adapter's limit allows it: needs grow from level to level.
+/// A quarter more than asked for, as far as that fits in one binding: needs grow from level to level.
 pub(crate) fn with_headroom(bytes: u64, limit: u64) -> u64 {
     bytes.saturating_add(bytes / 4).min(limit).max(bytes)
 }

@@ -56,8 +56,13 @@ impl<'a> Commands<'a> {
             });
             (compiled.pipeline, group)
         });
-        let ready = ready.map_err(|e| self.failure.get_or_insert(e).clone()).ok();
-        Bound { name: kernel.name(), ready }
+        match ready {
+            Ok(ready) => Bound { name: kernel.name(), ready: Some(ready) },
+            Err(error) => {
+                self.failure.get_or_insert(error);
+                Bound { name: kernel.name(), ready: None }
+            }
+        }
     }
 
     /// Records one dispatch of at least `invocations` invocations; `words` is what the kernel says of its `dispatch` uniform.
@@ -126,6 +131,10 @@ impl<'a> Commands<'a> {
         invocations: u32,
         dispatch: impl FnOnce(&mut wgpu::ComputePass<'_>),
     ) {
+        // What follows a failure would read what was not written.
+        if self.failure.is_some() {
+            return;
+        }
         let Some((pipeline, group)) = &bound.ready else { return };
         let offset = self.recorded.len() as u32;
         self.recorded.extend_from_slice(bytemuck::bytes_of(&Dispatch { x, y, z, w, first }));

@@ -116,7 +116,7 @@ pub(crate) fn least_largest(
 
 /// Names and bytes of buffers, which grow as [`crate::buffers::Buffer`] does.
 struct Needs {
-    /// Bytes that the adapter allows in one of them.
+    /// Bytes that the adapter allows in a binding: up to there buffers have room for more.
     limit: u64,
     buffers: Vec<(&'static str, u64)>,
 }

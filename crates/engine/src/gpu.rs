@@ -1,6 +1,7 @@
 //! Adapters and devices.
 
 use crate::Error;
+use crate::windows::RECORDS;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
@@ -133,9 +134,10 @@ impl Gpu {
     pub fn largest_buffer(&self) -> u64 {
         let limits = self.device.limits();
         let spare = limits.max_storage_buffers_per_shader_stage.saturating_sub(KERNEL_BUFFERS);
-        let most = limits.max_buffer_size & !15;
+        let most = limits.max_buffer_size / RECORDS * RECORDS;
         let binding = self.largest_binding();
-        most.min(binding.saturating_add(binding / BUFFERS_AT_ONCE * u64::from(spare)))
+        let further = (binding / BUFFERS_AT_ONCE).saturating_mul(spare.into());
+        most.min(binding.saturating_add(further))
     }
 
     /// Runs `work` and returns the device's own complaint, if there was one, rather than what followed from it.

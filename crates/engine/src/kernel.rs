@@ -1,10 +1,11 @@
 //! One compute kernel: from WGSL to a pipeline, with its layout read from the text.
 
 use crate::shaders::Shader;
+use crate::uniforms::lock;
 use crate::windows::{split, window_bytes};
 use crate::{Error, Gpu, Mode};
 use std::borrow::Cow;
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
 /// Invocations of a workgroup; `linear_index` in the shaders counts on it.
 pub const WORKGROUP_SIZE: u32 = 64;
@@ -56,7 +57,7 @@ impl Kernel {
         if windows.iter().all(|count| *count == 1) {
             return Ok(self.whole.clone());
         }
-        let mut compiled = self.windowed.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut compiled = lock(&self.windowed);
         if let Some((_, found)) = compiled.iter().find(|(counts, _)| counts == windows) {
             return Ok(found.clone());
         }

@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::commands::Commands;
 use crate::records::Counters;
-use crate::stages::{CANDIDATE_STRIDE, Sizing, Step, WORD, words_of};
+use crate::stages::{CANDIDATE_STRIDE, Sizing, Step, WORD, items_of, words_of};
 use std::ops::Range;
 
 /// Links between candidates that are provided before their need is known.
@@ -28,7 +28,7 @@ impl Step<'_> {
         self.buffers.new_indices.reserve(self.gpu, WORD * (candidates + 1))?;
         self.scan.reserve(self.gpu, self.params.candidates + 1)?;
         loop {
-            self.params.mirror_links = words_of(&self.buffers.mirror_links) / 2;
+            self.params.mirror_links = items_of(&self.buffers.mirror_links, 2);
             self.record_links().await?;
             // Where contested candidates alone are asked, they wait for round 1.
             let first = u32::from(self.asks_contested_alone);

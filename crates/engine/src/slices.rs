@@ -74,7 +74,8 @@ impl Slices {
     /// The host's part is not cut. The first call checks, orders and uploads the points, 0.15 to 0.3 µs for each: it can be
     /// made on another thread. Each step lays out creases and boundaries in one call. Buffers that grow are filled with zeros
     /// by the driver, within a slice, and a round of the colouring, a 32nd of the points, or of contested candidates is one piece. Kernels that
-    /// [`Refiner::prepare`] or [`Refiner::prepare_curves`] did not compile are compiled in the call that needs them.
+    /// [`Refiner::prepare`] or [`Refiner::prepare_curves`] did not compile are compiled in the call that needs them, as are those for
+    /// buffers that are longer than a binding.
     ///
     /// # Errors
     /// As [`Refiner::refine`]. The run has ended then.

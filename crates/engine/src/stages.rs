@@ -271,7 +271,7 @@ impl Step<'_> {
         }
     }
 
-    /// Whether the arena sufficed; else makes it larger, or `part` smaller where the adapter allows no larger one.
+    /// Whether the arena sufficed; else makes it larger, or `part` smaller where no larger one fits in a binding.
     fn make_room_in_arena(&mut self, counters: &Counters, part: &mut u32) -> Result<bool, Error> {
         if counters.arena_peak <= self.params.arena_words {
             return Ok(true);
@@ -307,7 +307,7 @@ impl Step<'_> {
         let entries = u64::from(self.sizing.entries.min(7)) * u64::from(n);
         self.buffers.ring_entries.reserve(self.gpu, 2 * WORD * entries)?;
         loop {
-            self.params.ring_entries = words_of(&self.buffers.ring_entries) / 2;
+            self.params.ring_entries = items_of(&self.buffers.ring_entries, 2);
             let mut commands = self.commands();
             commands.clear(&self.buffers.counters, words_of(&self.buffers.counters).into());
             let kernel = self.kernels.get("neighborhood");
@@ -332,7 +332,7 @@ impl Step<'_> {
         self.buffers.gap_count.reserve(self.gpu, WORD)?;
         let count = loop {
             let b = &*self.buffers;
-            let room = words_of(&b.gaps) / 4;
+            let room = items_of(&b.gaps, 4);
             let mut commands = self.commands();
             commands.clear(&b.gap_count, 1);
             let buffers = [&b.fans, &b.ring_entries, &b.gaps, &b.gap_count];
@@ -441,7 +441,7 @@ impl Step<'_> {
         let links = u64::from(self.sizing.entries) / 12 * u64::from(n);
         self.buffers.mirror_links.reserve(self.gpu, 2 * WORD * links)?;
         loop {
-            self.params.mirror_links = words_of(&self.buffers.mirror_links) / 2;
+            self.params.mirror_links = items_of(&self.buffers.mirror_links, 2);
             self.record_mirror().await?;
             self.sort_by_priority().await?;
             let mut round = RANGES + self.sizing.rounds;
@@ -650,5 +650,10 @@ impl Step<'_> {
 
 /// Whole words in a buffer.
 pub(crate) fn words_of(buffer: &Buffer) -> u32 {
-    u32::try_from(buffer.size() / WORD).unwrap_or(u32::MAX)
+    items_of(buffer, 1)
+}
+
+/// Whole items of so many words in a buffer.
+pub(crate) fn items_of(buffer: &Buffer, words: u64) -> u32 {
+    u32::try_from(buffer.size() / (WORD * words)).unwrap_or(u32::MAX)
 }

@@ -13,8 +13,10 @@ use naga::{
 };
 use std::collections::HashMap;
 
-/// Windows begin at multiples of so many bytes: no record, of 4 to 96 bytes, is cut, and drivers ask for 256 at most.
-const GRAIN: u64 = 768;
+/// A multiple of the bytes of every record.
+pub(crate) const RECORDS: u64 = 96;
+/// Windows begin at multiples of so many bytes: no record is cut, and drivers ask for 256 at most.
+const GRAIN: u64 = 8 * RECORDS;
 
 /// Bytes of a window where a binding may have so many.
 pub(crate) fn window_bytes(largest_binding: u64) -> u64 {
@@ -42,8 +44,7 @@ struct Place {
 enum Access {
     Load,
     Store,
-    /// And whether the value before it is asked for.
-    Atomic(AtomicFunction, bool),
+    Atomic(AtomicFunction),
 }
 
 /// Gives arrays more bindings: as many windows as `counts` says of each binding from 2 on. Those after the first follow the last
@@ -104,7 +105,7 @@ fn declare(module: &mut Module, counts: &[u32], bytes: u64) -> Result<Vec<Window
             let window = GlobalVariable { binding, ..variable.clone() };
             handles.push(variables.append(window, Span::UNDEFINED));
         }
-        let items = (bytes / u64::from(stride)) as u32;
+        let items = u32::try_from(bytes / u64::from(stride)).unwrap_or(u32::MAX);
         arrays.push(Windowed { variables: handles, element: base, items });
     }
     Ok(arrays)
@@ -118,7 +119,7 @@ struct Redirected<'a> {
     moved: &'a [Handle<Function>],
 }
 
-/// Makes or finds the function for an access.
+/// Gives the function for an access: each has its own.
 type Accessor<'a> = &'a mut dyn FnMut(&Place, Access) -> Handle<Function>;
 
 impl<'a> Redirected<'a> {
@@ -159,7 +160,10 @@ impl<'a> Redirected<'a> {
                 }
                 &mut Statement::Atomic { pointer, fun, value, result } => {
                     if let Some(place) = self.places.get(&pointer) {
-                        let function = accessor(place, Access::Atomic(fun, result.is_some()));
+                        if let AtomicFunction::Exchange { compare: Some(_) } = fun {
+                            return Err("a windowed array is compared and exchanged".into());
+                        }
+                        let function = accessor(place, Access::Atomic(fun));
                         let arguments = vec![place.index, value];
                         if let Some(result) = result {
                             self.function.expressions[result] = Expression::CallResult(function);
@@ -167,10 +171,7 @@ impl<'a> Redirected<'a> {
                         statement = Statement::Call { function, arguments, result };
                     }
                 }
-                Statement::Call { function, arguments, .. } => {
-                    if arguments.iter().any(|argument| self.places.contains_key(argument)) {
-                        return Err("a pointer into a windowed array is an argument".into());
-                    }
+                Statement::Call { function, .. } => {
                     *function = self.moved.get(function.index()).copied().unwrap_or(*function);
                 }
                 Statement::Block(inner) => self.inside(inner, accessor)?,
@@ -246,8 +247,9 @@ fn places(
             }
             Expression::AccessIndex { base, index } => {
                 if let Some(&array) = whole.get(&base) {
-                    // It is in the first window.
-                    assert!(index < arrays[array].items);
+                    if index >= arrays[array].items {
+                        return Err("a constant index is beyond the first window".into());
+                    }
                 } else if let Some(mut place) = places.get(&base).cloned() {
                     place.members.push(index);
                     places.insert(handle, place);

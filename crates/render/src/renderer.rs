@@ -6,6 +6,7 @@ use crate::style::{SOFT, SOLID, packed_ramp};
 use crate::view::Uniform;
 use crate::{Camera, Error, Picture, Size, Splats, Style};
 use glam::Vec3;
+use std::num::NonZeroU64;
 use surfine::records::Point;
 use surfine::{Gpu, GpuRefined, wgpu};
 
@@ -58,6 +59,11 @@ struct Targets {
     normals: wgpu::Texture,
     picture: wgpu::Texture,
 }
+
+/// Bytes of a point.
+const POINT: u64 = size_of::<Point>() as u64;
+/// Bindings begin at multiples of so many bytes, whatever the driver.
+const BINDING_STEP: u64 = 256;
 
 /// Points in device memory, ready to be drawn.
 #[derive(Clone, Debug, Default)]
@@ -281,11 +287,21 @@ impl Renderer {
     ) {
         pass.set_pipeline(pipeline);
         pass.set_bind_group(0, &self.bind(pipeline, 0, shared), &[]);
+        // The engine's buffers can be longer than a binding. Those with extras are not.
+        let most = (self.gpu.largest_binding() / BINDING_STEP * BINDING_STEP / POINT) as u32;
         for part in &splats.parts {
-            let buffers = [&part.points, part.extras.as_ref().unwrap_or(&self.no_extras)];
-            let buffers = buffers.map(wgpu::Buffer::as_entire_binding);
-            pass.set_bind_group(1, &self.bind(pipeline, 1, &buffers), &[]);
-            pass.draw(0..4, 0..part.count);
+            let extras = part.extras.as_ref().unwrap_or(&self.no_extras).as_entire_binding();
+            for first in (0..part.count).step_by(most as usize) {
+                let count = most.min(part.count - first);
+                let points = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                    buffer: &part.points,
+                    offset: POINT * u64::from(first),
+                    size: NonZeroU64::new(POINT * u64::from(count)),
+                });
+                let group = self.bind(pipeline, 1, &[points, extras.clone()]);
+                pass.set_bind_group(1, &group, &[]);
+                pass.draw(0..4, 0..count);
+            }
         }
     }
 

@@ -18,7 +18,7 @@ pub(super) fn accessor(
     let ty = value_type(types, array.element, &place.members);
     let argument = |ty| FunctionArgument { name: None, ty, binding: None };
     let takes_value = !matches!(access, Access::Load);
-    let gives_value = !matches!(access, Access::Store | Access::Atomic(_, false));
+    let gives_value = !matches!(access, Access::Store);
     let mut function = Function {
         name: Some("window".into()),
         arguments: [vec![argument(uint)], vec![argument(ty); takes_value.into()]].concat(),
@@ -76,9 +76,8 @@ fn act(
             body.push(Statement::Store { pointer, value }, Span::UNDEFINED);
             None
         }
-        (Access::Atomic(fun, asked), Some(value)) => {
-            let result = Expression::AtomicResult { ty, comparison: false };
-            let result = asked.then(|| add(function, result));
+        (Access::Atomic(fun), Some(value)) => {
+            let result = Some(add(function, Expression::AtomicResult { ty, comparison: false }));
             body.push(Statement::Atomic { pointer, fun, value, result }, Span::UNDEFINED);
             result
         }
