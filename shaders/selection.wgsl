@@ -15,14 +15,6 @@
 @group(0) @binding(6) var<storage, read_write> rounds: array<atomic<u32>, 2>;
 @group(0) @binding(7) var<storage, read_write> counters: Counters;
 
-struct SharedCandidate {
-    place: vec4<f32>,
-    normal: vec3<f32>,
-    state: atomic<u32>,
-    corners: vec3<u32>,
-    size: f32,
-}
-
 @compute @workgroup_size(64)
 fn selection(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear_index(id, groups);
@@ -37,7 +29,7 @@ fn selection(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
     if c >= params.candidates || atomicLoad(&candidates[c].state) != WAITING {
         return;
     }
-    let state = decide(c);
+    let state = state_of(c);
     if state == WAITING {
         let at = atomicAdd(&rounds[1u - parity], 1u);
         waiting[(1u - parity) * params.candidates + at] = c;
@@ -45,18 +37,4 @@ fn selection(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
         atomicStore(&candidates[c].state, state);
     }
     note_cut_loops(candidates[c].corners.x);
-}
-
-/// The state of a candidate, as far as those that discard it have theirs.
-fn decide(c: u32) -> u32 {
-    var state = INSERTED;
-    for (var link = heads[c]; link != 0u; link = links[link - 1u].y) {
-        let other = atomicLoad(&candidates[links[link - 1u].x].state);
-        if other == WAITING {
-            state = WAITING;
-        } else if other != FREE {
-            return FREE;
-        }
-    }
-    return state;
 }

@@ -183,12 +183,11 @@ fn new_points_neighborhoods_and_radii_are_those_of_the_reference() {
     }
 }
 
-#[test]
-fn a_candidate_waits_for_those_before_it() {
-    // A chain, each discarded by the one before: every second one is inserted, in as many rounds as the timing makes of it.
-    const CHAIN: u32 = 100;
-    let mut device = device();
-    let step = steps_with(true).next().expect("there are steps");
+/// A chain of candidates, each discarded by the one before: every second one is inserted, in as many rounds as the timing makes
+/// of it.
+const CHAIN: u32 = 100;
+
+fn chain(device: &mut Device, step: &Step) -> Overlaps {
     let count = step.state.candidates.len();
     let wait = |c: Candidate| Candidate { state: WAITING, ..c };
     let candidates: Vec<Candidate> = step.candidates().into_iter().map(wait).collect();
@@ -197,11 +196,62 @@ fn a_candidate_waits_for_those_before_it() {
     let heads: Vec<u32> = (0..count as u32).map(|c| if c < CHAIN { c } else { 0 }).collect();
     let links: Vec<[u32; 2]> = (0..CHAIN).map(|i| [i, 0]).collect();
     let (heads, links) = (device.buffer("heads", &heads), device.buffer("links", &links));
-    let overlaps = Overlaps::new(&mut device, candidates, heads, links, count);
+    Overlaps::new(device, candidates, heads, links, count)
+}
+
+fn states(device: &mut Device, overlaps: &Overlaps, count: usize) -> Vec<u32> {
+    let candidates: Vec<Candidate> = device.read(&overlaps.candidates, count);
+    candidates.iter().map(|c| c.state).collect()
+}
+
+fn every_second(c: u32) -> u32 {
+    if c % 2 == 1 { FREE } else { 1 }
+}
+
+#[test]
+fn a_candidate_waits_for_those_before_it() {
+    let mut device = device();
+    let step = steps_with(true).next().expect("there are steps");
+    let count = step.state.candidates.len();
+    let overlaps = chain(&mut device, step);
     select(&mut device, step, &overlaps);
-    let states: Vec<Candidate> = device.read(&overlaps.candidates, count);
-    for (c, candidate) in (0..).zip(&states) {
-        let is_discarded = c < CHAIN && c % 2 == 1;
-        assert_eq!(candidate.state, if is_discarded { FREE } else { 1 }, "candidate {c}");
+    for (c, state) in (0..).zip(states(&mut device, &overlaps, count)) {
+        assert_eq!(state, if c < CHAIN { every_second(c) } else { 1 }, "candidate {c}");
+    }
+}
+
+#[test]
+fn one_workgroup_does_the_last_rounds() {
+    let mut device = device();
+    let step = steps_with(true).next().expect("there are steps");
+    let count = step.state.candidates.len();
+    let mut overlaps = chain(&mut device, step);
+    // The last of the chain comes first, so that each round decides few.
+    let mut waiting: Vec<u32> = (0..CHAIN).rev().collect();
+    waiting.resize(2 * count, u32::MAX);
+    overlaps.waiting = device.guarded("waiting", &waiting);
+    let run = |device: &mut Device, overlaps: &Overlaps, left: u32| {
+        let rounds = device.guarded("rounds", &[left, 7]);
+        let counters = device.counters();
+        let Overlaps { candidates, heads, links, waiting, .. } = overlaps;
+        let buffers = [candidates, heads, links, waiting, &rounds, &counters];
+        device.run(step.run("selection_tail", [2, 0, 0, 0], 1), &buffers);
+        device.read_counters(&counters, &step.name);
+        device.read::<u32>(&rounds, 2)[0]
+    };
+    const TOO_MANY: u32 = 513;
+    assert_eq!(run(&mut device, &overlaps, TOO_MANY), TOO_MANY, "they are left to others");
+    assert_eq!(states(&mut device, &overlaps, count), vec![WAITING; count]);
+    let mut left = CHAIN;
+    let mut runs = 0;
+    while left > 0 {
+        let now = run(&mut device, &overlaps, left);
+        // Each of 16 rounds decides one at least.
+        assert!(now + left.min(16) <= left, "{left} waited, {now} wait");
+        (left, runs) = (now, runs + 1);
+    }
+    assert!(runs <= CHAIN.div_ceil(16), "{runs} runs");
+    for (c, state) in (0..).zip(states(&mut device, &overlaps, count)) {
+        assert_eq!(state, if c < CHAIN { every_second(c) } else { WAITING }, "candidate {c}");
     }
 }

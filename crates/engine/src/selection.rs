@@ -6,6 +6,9 @@ use crate::records::Counters;
 use crate::stages::{CANDIDATE_STRIDE, Sizing, Step, WORD, items_of, words_of};
 use std::ops::Range;
 
+/// Rounds that have a dispatch of their own before one workgroup does the rest: after three of them a few candidates wait, or none.
+const ROUNDS: u32 = 3;
+
 /// Links between candidates that are provided before their need is known.
 pub(crate) fn links(points: u64, sizing: &Sizing) -> u64 {
     u64::from(sizing.entries).saturating_mul(points) / 16
@@ -32,7 +35,8 @@ impl Step<'_> {
             self.record_links().await?;
             // Where contested candidates alone are asked, they wait for round 1.
             let first = u32::from(self.asks_contested_alone);
-            let mut rounds = first..first + self.sizing.rounds;
+            let each = self.sizing.rounds.min(ROUNDS);
+            let mut rounds = first..first + each;
             let (counters, mut left) = self.run_selection(rounds.clone()).await?;
             if counters.mirrored > self.params.mirror_links {
                 let bytes = 2 * WORD * u64::from(counters.mirrored);
@@ -40,7 +44,7 @@ impl Step<'_> {
                 continue;
             }
             while left > 0 {
-                rounds = rounds.end..rounds.end + self.sizing.rounds;
+                rounds = rounds.end..rounds.end + each;
                 left = self.run_selection(rounds.clone()).await?.1;
             }
             break;
@@ -102,13 +106,14 @@ impl Step<'_> {
         commands.run(self.kernels.get("selection_round"), &buffers, [round, row, 0, 0], 1).await;
     }
 
-    /// Some rounds. Returns the counters and how many candidates are left.
+    /// Some rounds, and what one workgroup can do of the others. Returns the counters and how many candidates are left.
     async fn run_selection(&self, rounds: Range<u32>) -> Result<(Counters, u32), Error> {
         let b = &*self.buffers;
         let mut commands = self.commands();
         let graph = [&b.candidates, &b.mirror_heads, &b.mirror_links];
         let state = [&b.waiting, &b.rounds, &b.counters];
-        let round = commands.bind(self.kernels.get("selection"), &[&graph[..], &state].concat());
+        let buffers = [&graph[..], &state].concat();
+        let round = commands.bind(self.kernels.get("selection"), &buffers);
         for i in rounds.clone() {
             if i == 0 {
                 commands.dispatch(&round, [0; 4], self.params.candidates).await;
@@ -118,6 +123,8 @@ impl Step<'_> {
             let about = self.waiting_for(i);
             commands.dispatch_indirect(&round, [i, 0, 0, 0], &b.workgroups, about).await;
         }
+        let tail = self.kernels.get("selection_tail");
+        commands.run(tail, &buffers, [rounds.end, 0, 0, 0], 1).await;
         commands.finish().await?;
         let (counters, waiting) = self.read(&[(&b.rounds, rounds.end % 2)]).await?;
         Ok((counters, waiting[0]))
