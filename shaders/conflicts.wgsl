@@ -59,6 +59,7 @@ fn conflicts(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
     if !fits(size + 1u) || !store(p, reach, size) {
         fans[p].left_over = CONFLICTS;
         atomicOr(&counters.left_over, CONFLICTS);
+        atomicMax(&counters.longest_row, 3u * size + 1u);
     }
     note_cut_loops(p);
 }

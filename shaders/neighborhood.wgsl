@@ -54,6 +54,7 @@ fn neighborhood(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workg
     if !fits(size + 1u) {
         fans[p].left_over = NEIGHBORHOOD;
         atomicOr(&counters.left_over, NEIGHBORHOOD);
+        atomicMax(&counters.longest_row, size + 1u);
         return;
     }
     count_ball(size);

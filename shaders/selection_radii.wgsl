@@ -67,6 +67,7 @@ fn selection_radii(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
         if size + slots.y + 1u > LONGEST_NEXT {
             fans[p].left_over = NEXT_RING;
             atomicOr(&counters.left_over, NEXT_RING);
+            atomicMax(&counters.longest_row, size + slots.y + 1u);
         }
     }
     note_cut_loops(p);

@@ -27,6 +27,9 @@ fn store(p: u32, reach: Reach, size: u32) -> bool {
         atomicOr(&counters.left_over, fans[p].left_over);
     }
     let first = atomicAdd(&counters.around, seen + found);
+    if first + seen + found < first {
+        atomicAdd(&counters.around_high, 1u);
+    }
     fans[p].around = vec2(first, seen);
     if first + seen + found > params.around_entries {
         fans[p].conflicts = vec2(0u);

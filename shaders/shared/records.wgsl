@@ -98,14 +98,16 @@ struct Dispatch {
 
 /// Counters that the host reads between stages.
 struct Counters {
-    /// Words of the arena that were asked for since the counter was cleared.
+    /// Blocks of the arena that were asked for since the counter was cleared.
     arena: atomic<u32>,
-    /// Largest number of words that one dispatch asked for.
+    /// Largest number of blocks that one dispatch asked for.
     arena_peak: atomic<u32>,
     /// Entries of rings that were asked for.
     slots: atomic<u32>,
     /// Entries of lists of candidates around points and of conflicts that were asked for.
     around: atomic<u32>,
+    /// The same, high word.
+    around_high: atomic<u32>,
     /// Links of mirrored conflicts, or of candidates to those that discard them, that were asked for.
     mirrored: atomic<u32>,
     /// Number of classes.
@@ -118,7 +120,7 @@ struct Counters {
     ball_high: atomic<u32>,
     /// A bit for each kernel that left points to its variant with rows in the arena.
     left_over: atomic<u32>,
-    /// The longest row in the arena.
+    /// The longest row of a point that is left to a variant with rows in the arena, in words.
     longest_row: atomic<u32>,
     /// One more than the last point for which the driver cut loops short; see cut_loops.wgsl.
     cut_loops: atomic<u32>,

@@ -5,7 +5,7 @@ use crate::tolerance::{EXACT, Tolerance};
 use std::collections::HashMap;
 use std::sync::{LazyLock, Mutex, MutexGuard, OnceLock};
 use surfine::curves::{Curves, Table, table};
-use surfine::records::{Candidate, Counters, Fan, LEVEL_BITS, Params, Point};
+use surfine::records::{ARENA_BLOCK, Candidate, Counters, Fan, LEVEL_BITS, Params, Point};
 use surfine::shaders::SHADERS;
 use surfine::testing::{Buffer, Commands, Uniforms, constants, read};
 use surfine::{Boundary, Gpu, Kernel, Mode, RefineParams, Refiner, Vec3};
@@ -95,7 +95,8 @@ impl Device {
     pub(crate) fn read_counters(&self, buffer: &Buffer, name: &str) -> Counters {
         let counters = self.read::<Counters>(buffer, 1)[0];
         assert_eq!(counters.cut_loops, 0, "{name}");
-        assert!(counters.arena_peak as usize <= ARENA_WORDS, "{name}: the arena is too small");
+        let words = (ARENA_BLOCK * counters.arena_peak) as usize;
+        assert!(words <= ARENA_WORDS, "{name}: the arena is too small");
         counters
     }
 

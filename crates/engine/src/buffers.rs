@@ -10,6 +10,8 @@ use std::num::NonZeroU64;
 pub struct Buffer {
     label: &'static str,
     raw: wgpu::Buffer,
+    /// Bytes that kernels see: all, or those of the last need where all take more than one binding.
+    seen: u64,
 }
 
 const STORAGE: wgpu::BufferUsages = wgpu::BufferUsages::STORAGE
@@ -28,16 +30,14 @@ impl Buffer {
         if bytes > have {
             return Err(Error::Limit { what: label, need: bytes, have, adapter: gpu.name.clone() });
         }
-        // Each of several windows holds whole records, so that the last one has at least one.
-        let unit = if bytes > gpu.largest_binding() { RECORDS } else { 16 };
-        let size = bytes.next_multiple_of(unit).max(64);
+        let size = padded(gpu, bytes);
         let raw = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
             size,
             usage: STORAGE,
             mapped_at_creation: false,
         });
-        Ok(Self { label, raw })
+        Ok(Self { label, raw, seen: size })
     }
 
     /// A buffer that holds `data`.
@@ -59,17 +59,21 @@ impl Buffer {
         self.raw.size()
     }
 
+    /// Bytes that kernels see of it.
+    pub(crate) fn seen(&self) -> u64 {
+        self.seen
+    }
+
     /// The bindings that a kernel sees it through: one if it is no longer than a binding may be.
     pub(crate) fn windows(&self, gpu: &Gpu) -> Vec<wgpu::BindingResource<'_>> {
         let largest_binding = gpu.largest_binding();
         let window = window_bytes(largest_binding);
-        let whole = self.size() <= largest_binding;
-        let step = if whole { self.size() } else { window };
-        let offsets = (0..self.size()).step_by(step as usize);
+        let step = if self.seen <= largest_binding { self.seen } else { window };
+        let offsets = (0..self.seen).step_by(step as usize);
         let binding = |offset| wgpu::BufferBinding {
             buffer: &self.raw,
             offset,
-            size: NonZeroU64::new(step.min(self.size() - offset)),
+            size: NonZeroU64::new(step.min(self.seen - offset)),
         };
         offsets.map(|offset| wgpu::BindingResource::Buffer(binding(offset))).collect()
     }
@@ -84,6 +88,7 @@ impl Buffer {
         if bytes > self.size() {
             *self = Self::new(gpu, self.label, with_headroom(bytes, gpu.largest_binding()))?;
         }
+        self.see(gpu, bytes);
         Ok(())
     }
 
@@ -96,13 +101,27 @@ impl Buffer {
             gpu.queue.submit([encoder.finish()]);
             *self = grown;
         }
+        self.see(gpu, bytes);
         Ok(())
+    }
+
+    /// Shows kernels so many bytes at least. What an earlier, larger run left behind is no reason for a second binding.
+    fn see(&mut self, gpu: &Gpu, bytes: u64) {
+        let size = self.size();
+        self.seen = if size <= gpu.largest_binding() { size } else { padded(gpu, bytes).min(size) };
     }
 
     /// Hands the buffer out and leaves an empty one.
     pub(crate) fn take(&mut self, gpu: &Gpu) -> Result<wgpu::Buffer, Error> {
         Ok(std::mem::replace(self, Self::new(gpu, self.label, 0)?).raw)
     }
+}
+
+/// The bytes of a buffer, or of what kernels see of it, for so many that are needed.
+fn padded(gpu: &Gpu, bytes: u64) -> u64 {
+    // Each of several windows holds whole records, so that the last one has at least one.
+    let unit = if bytes > gpu.largest_binding() { RECORDS } else { 16 };
+    bytes.next_multiple_of(unit).max(64)
 }
 
 /// A quarter more than asked for, as far as that fits in one binding: needs grow from level to level.

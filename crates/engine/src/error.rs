@@ -78,20 +78,32 @@ pub enum Error {
         /// Name of the adapter.
         adapter: String,
     },
-    /// A point has more neighbours than the driver can walk through: software drivers end long loops.
+    /// A point has more neighbors than the driver can walk through: software drivers end long loops.
     #[error(
-        "vertex {point} has too many neighbours at level {level} ({neighbors} within its radius): {adapter} ends loops \
-         early; lower the radii to about 1.25 times the distance to the farthest natural neighbour, or use the CPU"
+        "{} has too many neighbors in step {level}: {adapter} ends long loops early; lower the radii to about 1.25 times the \
+         distance to the farthest natural neighbor, or use the CPU",
+        vertex.map_or("a new point".into(), |vertex| format!("vertex {vertex}"))
     )]
     Crowded {
-        /// Index of such a point.
-        point: usize,
-        /// How many it has.
-        neighbors: u32,
+        /// Index of such a point in the input; none for a point that an earlier step inserted.
+        vertex: Option<usize>,
         /// The refinement step that failed, from 1.
         level: u32,
         /// Name of the adapter.
         adapter: String,
+    },
+    /// Creases and boundaries have more records than the device's points can name.
+    #[error(
+        "step {level}: creases and boundaries have {records} points, each normal counted, more than the {most} that the GPU \
+         backend can number: use fewer levels, or use the CPU"
+    )]
+    Curves {
+        /// The refinement step, from 1.
+        level: u32,
+        /// Records on creases and boundaries after the step.
+        records: usize,
+        /// The most there can be.
+        most: usize,
     },
     /// A kernel could not be built.
     #[error("kernel {name}: {message}")]
@@ -109,4 +121,37 @@ pub enum Error {
         /// What the driver said.
         message: String,
     },
+}
+
+impl Error {
+    /// The error with the index of the input in place of that of the device, which has its points in `order`; the records of further
+    /// normals follow them and belong to `owners`.
+    pub(crate) fn of_input(self, order: &[u32], owners: &[u32]) -> Self {
+        let Self::Crowded { vertex: Some(record), level, adapter } = self else { return self };
+        let point = if record < order.len() {
+            Some(record)
+        } else {
+            owners.get(record - order.len()).map(|owner| *owner as usize)
+        };
+        Self::Crowded { vertex: point.map(|point| order[point] as usize), level, adapter }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn crowded_points_are_named_as_in_the_input() {
+        let found = |record| {
+            let error = Error::Crowded { vertex: Some(record), level: 1, adapter: "any".into() };
+            match error.of_input(&[2, 0, 1], &[1, 2]) {
+                Error::Crowded { vertex, .. } => vertex,
+                other => panic!("{other}"),
+            }
+        };
+        assert_eq!([0, 1, 2].map(found), [Some(2), Some(0), Some(1)]);
+        // Records of further normals, then a new point.
+        assert_eq!([3, 4, 5].map(found), [Some(0), Some(1), None]);
+    }
 }

@@ -7,13 +7,10 @@
 
 use crate::buffers::with_headroom;
 use crate::records::{Candidate, Fan, Point};
-use crate::selection::links;
-use crate::stages::Sizing;
+use crate::sizing::{Sizing, WORD, boundary_gaps, radii};
 use crate::{Error, Gpu};
 use surfine_points::{Boundary, GridShape, RefineParams, Vec3};
 
-/// Bytes of a word.
-const WORD: u64 = 4;
 const POINT: u64 = size_of::<Point>() as u64;
 /// Bytes of long rows for each point of the first step, where all have far too large radii: half as large again as fit, on random points.
 const FIRST_LONG_ROWS: u64 = 4000;
@@ -53,7 +50,7 @@ impl Forecast {
         let sizes = points_by_level(records, params.levels);
         let mut needs = Needs { limit, buffers: vec![("points", POINT * input)] };
         if params.levels > 0 && params.boundary != Boundary::None {
-            needs.reserve("boundary gaps", 4 * WORD * (input / 16 + 1024));
+            needs.reserve("boundary gaps", 4 * WORD * boundary_gaps(params, input));
         }
         for pair in sizes.windows(2) {
             Step::even(pair[0], pair[1], input).add_to(&mut needs, sizing, params);
@@ -62,7 +59,7 @@ impl Forecast {
         Self {
             points_by_level: points_by_level(points, params.levels),
             device_bytes,
-            uneven_bytes: device_bytes.saturating_add(long_rows(&sizes, sizing)),
+            uneven_bytes: device_bytes.saturating_add(long_rows(&sizes, sizing).min(limit)),
             largest_buffer: needs.largest(),
         }
     }
@@ -181,31 +178,29 @@ impl Step {
         // The grid has no more cells for more points.
         let counted = points.min(1 << 30) as usize;
         let cells = GridShape::with_cell(Vec3::ZERO, 1.0, counted).cells() as u64;
-        let entries = u64::from(sizing.entries);
-        let ring_entries = slots.max(entries.min(7).saturating_mul(points));
         // Name, words of an item, items.
         let buffers = [
             ("grid cells", 1, cells + 1),
             ("grid entries", 4, items),
             ("cells", 2, items),
             ("fans", size_of::<Fan>() as u64 / WORD, points),
-            ("ring entries", 2, ring_entries),
+            ("ring entries", 2, slots.max(sizing.ring_entries(points))),
             ("candidates of slots", 1, slots),
             ("numbers of candidates", 1, slots),
             ("first candidates", 1, points.saturating_add(1)),
             ("candidates", size_of::<Candidate>() as u64 / WORD, candidates),
-            ("radii", 1, points.saturating_mul(2).saturating_add(candidates)),
+            ("radii", 1, radii(points, candidates)),
             ("new indices", 1, candidates.saturating_add(1)),
         ];
         let select = [
             ("heads of links", 1, candidates),
-            ("links", 2, links(points, sizing)),
+            ("links", 2, sizing.links(points)),
             ("waiting", 2, candidates),
         ];
         let insert = [
-            ("candidates around points", 4 * entries / 3, points),
+            ("candidates around points", 1, sizing.around_entries(points)),
             ("heads of links", 1, points),
-            ("links", 2 * (entries / 12), points),
+            ("links", 2, sizing.mirror_links(points)),
             ("classes", 1, points),
             ("waiting", 2, points),
             ("class members", 1, points),

@@ -2,6 +2,7 @@
 
 use crate::Error;
 use crate::windows::RECORDS;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
@@ -126,8 +127,10 @@ impl Gpu {
     /// The largest buffer that a kernel can use through one binding, bytes.
     pub fn largest_binding(&self) -> u64 {
         let limits = self.device.limits();
+        // Metal allows more, but the checks of indices count bytes in 32 bits there.
+        let most = limits.max_storage_buffer_binding_size.min(i32::MAX as u64);
         // Buffers are rounded up to 16 bytes, and drivers' limits need not be multiples of that.
-        limits.max_storage_buffer_binding_size.min(limits.max_buffer_size) & !15
+        most.min(limits.max_buffer_size) & !15
     }
 
     /// The largest buffer of a refinement, bytes: longer ones than a binding have several, as far as a stage may have so many.
@@ -171,8 +174,20 @@ impl Gpu {
 
     /// Waits for everything that was submitted.
     pub(crate) fn wait(&self) -> Result<(), Error> {
-        let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(TIMEOUT) };
-        self.device.poll(wait).map(|_| ()).map_err(|e| self.error(&e))
+        self.poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(TIMEOUT) })
+    }
+
+    /// Lets the device's callbacks run.
+    pub(crate) fn poll(&self, how: wgpu::PollType) -> Result<(), Error> {
+        // wgpu panics where the device was lost.
+        match catch_unwind(AssertUnwindSafe(|| self.device.poll(how))) {
+            Ok(polled) => polled.map(|_| ()).map_err(|e| self.error(&e)),
+            Err(panic) => {
+                let text = panic.downcast_ref::<String>().map(String::as_str);
+                let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
+                Err(self.error(&text.unwrap_or("the device was lost")))
+            }
+        }
     }
 
     pub(crate) fn error(&self, message: &impl ToString) -> Error {

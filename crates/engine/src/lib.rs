@@ -17,6 +17,7 @@
 //! ```
 
 mod buffers;
+mod clock;
 mod commands;
 pub mod curves;
 mod error;
@@ -25,13 +26,16 @@ mod gpu;
 mod kernel;
 mod pace;
 mod profile;
+mod read_back;
 pub mod records;
 mod refiner;
+mod run;
 mod scan;
-mod selection;
 pub mod shaders;
+mod sizing;
 mod slices;
 mod stages;
+mod step;
 mod uniforms;
 mod windows;
 
@@ -57,7 +61,8 @@ struct Readme;
 pub mod testing {
     pub use crate::buffers::Buffer;
     pub use crate::commands::Commands;
-    pub use crate::stages::{Constants, Sizing, constants};
+    pub use crate::sizing::Sizing;
+    pub use crate::step::{Constants, constants};
     pub use crate::uniforms::Uniforms;
 
     /// Reads the first `count` values of a buffer.

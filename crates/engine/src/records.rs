@@ -22,6 +22,9 @@ pub struct Point {
 /// Bits of a point's level; above them is its record.
 pub const LEVEL_BITS: u32 = 8;
 
+/// Words of a block of the arena: points take whole blocks, so that the number of these cannot pass 32 bits.
+pub const ARENA_BLOCK: u32 = 32;
+
 /// What belongs to a point of the level.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -145,6 +148,7 @@ pub struct Counters {
     pub arena_peak: u32,
     pub slots: u32,
     pub around: u32,
+    pub around_high: u32,
     pub mirrored: u32,
     pub classes: u32,
     pub isolated: u32,

@@ -71,11 +71,15 @@ impl Slices {
     /// runs. Devices with `wgpu::Features::TIMESTAMP_QUERY` tell it. On others a slice counts until the call, or another poll
     /// of the device, that finds it finished: there slices stay small unless calls follow each other faster than the budget.
     ///
-    /// The host's part is not cut. The first call checks, orders and uploads the points, 0.15 to 0.3 µs for each: it can be
-    /// made on another thread. Each step lays out creases and boundaries in one call. Buffers that grow are filled with zeros
-    /// by the driver, within a slice, and a round of the colouring, a 32nd of the points, or of contested candidates is one piece. Kernels that
-    /// [`Refiner::prepare`] or [`Refiner::prepare_curves`] did not compile are compiled in the call that needs them, as are those for
-    /// buffers that are longer than a binding.
+    /// Some work is never cut:
+    ///
+    /// * the host's part: the first call checks, orders and uploads the points, 0.15 to 0.3 µs for each (it can be made on
+    ///   another thread), and each step lays out creases and boundaries in one call;
+    /// * buffers that grow, which the driver fills with zeros;
+    /// * kernels that [`Refiner::prepare`] or [`Refiner::prepare_curves`] did not compile, and those for buffers longer than a
+    ///   binding: they are compiled in the call that needs them;
+    /// * with `simplified` the contested candidates, at most about a third; by the paper's loop a round of the colouring, a 32nd of
+    ///   the points.
     ///
     /// # Errors
     /// As [`Refiner::refine`]. The run has ended then.
@@ -95,7 +99,7 @@ impl Slices {
             self.run = None;
         }
         if polled.is_err() {
-            lock(&self.home).iter_mut().try_for_each(Refiner::renew)?;
+            lock(&self.home).iter_mut().for_each(Refiner::renew);
         }
         polled
     }

@@ -164,7 +164,13 @@ impl Uniforms {
             if self.is_paced() { done(gpu).await? } else { gpu.wait().map(|()| Instant::now())? };
         let times = match stamps {
             Some((stamps, readback)) => stamps.times(&readback.bytes(gpu)?),
-            None => self.shares(&dispatches, begin.map_or(Duration::ZERO, |begin| end - begin)),
+            None => Vec::new(),
+        };
+        // Stamps that all say nothing are no better than none.
+        let times = if times.iter().all(Duration::is_zero) {
+            self.shares(&dispatches, begin.map_or(Duration::ZERO, |begin| end - begin))
+        } else {
+            times
         };
         for ((kernel, invocations), time) in dispatches.into_iter().zip(times) {
             self.profile.iter().for_each(|profile| profile.add(kernel, time));
@@ -229,11 +235,10 @@ async fn done(gpu: &Gpu) -> Result<Instant, Error> {
         if looks == 1 {
             return Poll::Pending;
         }
-        let polled = gpu.device.poll(wgpu::PollType::Poll).map_err(|e| gpu.error(&e));
-        match (polled, end.get()) {
+        match (gpu.poll(wgpu::PollType::Poll), end.get()) {
             (Err(error), _) => Poll::Ready(Err(error)),
-            (Ok(_), Some(end)) => Poll::Ready(Ok(*end)),
-            (Ok(_), None) => Poll::Pending,
+            (Ok(()), Some(end)) => Poll::Ready(Ok(*end)),
+            (Ok(()), None) => Poll::Pending,
         }
     })
     .await

@@ -3,31 +3,27 @@
 use crate::Error;
 use crate::commands::Commands;
 use crate::records::Counters;
-use crate::stages::{CANDIDATE_STRIDE, Sizing, Step, WORD, items_of, words_of};
+use crate::sizing::{WORD, items_of, radii, words_of};
+use crate::step::Step;
 use std::ops::Range;
 
 /// Rounds that have a dispatch of their own before one workgroup does the rest: after three of them a few candidates wait, or none.
 const ROUNDS: u32 = 3;
 
-/// Links between candidates that are provided before their need is known.
-pub(crate) fn links(points: u64, sizing: &Sizing) -> u64 {
-    u64::from(sizing.entries).saturating_mul(points) / 16
-}
-
 impl Step<'_> {
-    /// `selection`: which candidates are inserted, and the radii of all points. Returns the number of new points, and which
-    /// kernels leave points over.
-    pub(crate) async fn selection(&mut self) -> Result<(u32, u32), Error> {
+    /// `selection`: which candidates are inserted, and the radii of all points. Returns the number of new points, and the
+    /// counters, which tell what is left over.
+    pub(crate) async fn selection(&mut self) -> Result<(u32, Counters), Error> {
         let (n, candidates) = (u64::from(self.params.points), u64::from(self.params.candidates));
         if !self.asks_contested_alone {
-            self.sort_into_grid(self.params.candidates, CANDIDATE_STRIDE).await?;
+            self.grid_candidates().await?;
         }
         self.buffers.mirror_heads.reserve(self.gpu, WORD * candidates)?;
-        self.buffers.mirror_links.reserve(self.gpu, 2 * WORD * links(n, self.sizing))?;
+        self.buffers.mirror_links.reserve(self.gpu, 2 * WORD * self.sizing.links(n))?;
         self.buffers.waiting.reserve(self.gpu, 2 * WORD * candidates)?;
         self.buffers.rounds.reserve(self.gpu, 2 * WORD)?;
         self.buffers.workgroups.reserve(self.gpu, 3 * WORD)?;
-        self.buffers.next_radii.reserve(self.gpu, WORD * (2 * n + candidates))?;
+        self.buffers.next_radii.reserve(self.gpu, WORD * radii(n, candidates))?;
         self.buffers.new_indices.reserve(self.gpu, WORD * (candidates + 1))?;
         self.scan.reserve(self.gpu, self.params.candidates + 1)?;
         loop {
@@ -52,7 +48,7 @@ impl Step<'_> {
         self.record_radii().await?;
         let last = self.params.candidates;
         let (counters, totals) = self.read(&[(&self.buffers.new_indices, last)]).await?;
-        Ok((totals[0], counters.left_over))
+        Ok((totals[0], counters))
     }
 
     /// Records who discards whom.
