@@ -2,11 +2,11 @@
 //! `discard.wgsl` and `next_radii.wgsl` in `shaders/shared`.
 
 use crate::angles::{Angles, Directions};
-use crate::ball::Center;
 use crate::candidates::Candidates;
 use crate::insertion::{COVER, HYSTERESIS, LESS, SMALLEST_SPLIT, Shared, Stage, raise};
 use crate::lists::{choose, insertion_sort, offer};
 use crate::math::{PI, TAU, is_apart, unit};
+use crate::pairs::Center;
 use crate::pn_triangle::Corner;
 use crate::visible::same_side;
 use glam::Vec3;

@@ -5,10 +5,12 @@
 //! old ring and of N' (by the paper's selection all new points nearby) go through the filter of section 4, and what is left must be within the radii, of
 //! the point and of the members alike.
 
-use crate::ball::{Around, Center, Members};
+use crate::ball::Members;
 use crate::insertion::{COVER, Insertion, Stage, raise};
 use crate::lists::filled;
 use crate::math::{PI, TAU, is_apart};
+use crate::pairs::Center;
+use crate::sort_ring::RingOrder;
 use glam::Vec3;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -52,7 +54,7 @@ pub fn next_ring(stage: Stage<'_>, insertion: &Insertion) -> Covers {
 struct Scratch {
     /// What may be on the next rings of a batch: old points by index, then candidates.
     members: Members,
-    kept: Around,
+    kept: RingOrder,
     ring: Vec<Member>,
 }
 
