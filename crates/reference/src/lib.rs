@@ -20,6 +20,7 @@ pub mod lists;
 mod natural;
 mod nearby;
 pub mod neighborhood;
+mod new_normal;
 pub mod next_ring;
 mod pairs;
 pub mod pn_triangle;

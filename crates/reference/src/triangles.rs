@@ -1,8 +1,11 @@
-//! The new points of many triangles at once. See [`crate::columns`].
+//! The new points of triangles (section 5, eq. 12), many at once: see [`crate::columns`]. Twin: `add_candidate` in
+//! `shaders/candidates.wgsl`.
 
 use crate::Level;
 use crate::columns::{BLOCK, Column, Vectors, vectorized};
-use crate::pn_triangle::{self, Corner};
+use crate::new_normal::{is_steep, safe_normal};
+use crate::pn_triangle::{Corner, displaced_center, exact_normal, is_none, reach};
+use glam::Vec3;
 use surfine_points::Rules;
 
 /// Triangles side by side.
@@ -48,7 +51,7 @@ impl NewPoints {
         Self { positions: Vectors::ZERO, normals: Vectors::ZERO, rho: [0.0; BLOCK] };
 
     #[inline(always)]
-    fn set(&mut self, i: usize, (position, normal, rho): pn_triangle::NewPoint) {
+    fn set(&mut self, i: usize, (position, normal, rho): NewPoint) {
         self.positions.set(i, position);
         self.normals.set(i, normal);
         self.rho[i] = rho;
@@ -58,13 +61,41 @@ impl NewPoints {
 vectorized! {
     pub(crate) fn new_points(triangles: &Triangles, rules: Rules, new: &mut NewPoints) {
         for i in 0..BLOCK {
-            new.set(i, pn_triangle::new_point(triangles.get(i), rules));
+            new.set(i, new_point(triangles.get(i), rules));
         }
     }
 
     pub(crate) fn literal_points(triangles: &Triangles, rules: Rules, new: &mut NewPoints) {
         for i in 0..BLOCK {
-            new.set(i, pn_triangle::literal_point(triangles.get(i), rules));
+            new.set(i, literal_point(triangles.get(i), rules));
         }
     }
+}
+
+/// Position, normal and ρ of a new point (section 5). The third is -1 where a triangle has none: if it has no area, or is steep.
+type NewPoint = (Vec3, Vec3, f32);
+
+/// The new point of a triangle.
+#[inline(always)]
+fn new_point(corners: [Corner; 3], rules: Rules) -> NewPoint {
+    let position = displaced_center(corners);
+    let rho = reach(corners, position);
+    let normal = safe_normal(corners, rho, rules);
+    let is_steep = rules.steep_faces & is_steep(corners, rho);
+    checked(position, normal, rho, is_steep)
+}
+
+/// [`new_point`] without the rule for slivers.
+#[inline(always)]
+fn literal_point(corners: [Corner; 3], rules: Rules) -> NewPoint {
+    let position = displaced_center(corners);
+    let rho = reach(corners, position);
+    let is_steep = rules.steep_faces & is_steep(corners, rho);
+    checked(position, exact_normal(corners, rho), rho, is_steep)
+}
+
+#[inline(always)]
+fn checked(position: Vec3, normal: Vec3, rho: f32, is_steep: bool) -> NewPoint {
+    let fails = (rho == 0.0) | is_none(normal) | is_steep;
+    if fails { (Vec3::ZERO, Vec3::ZERO, -1.0) } else { (position, normal, rho) }
 }
