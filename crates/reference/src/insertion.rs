@@ -9,8 +9,8 @@ use crate::angles::{Angles, Directions};
 use crate::candidates::Candidates;
 use crate::coloring::Classes;
 use crate::conflicts::Conflicts;
-use crate::fan::{Fan, Sample};
 use crate::neighborhood::Rings;
+use crate::new_ring::{NewRing, Sample};
 use crate::pool::Pool;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
@@ -140,7 +140,7 @@ pub fn insertion(stage: Stage<'_>, classes: &Classes, order: Order) -> Insertion
 #[derive(Default)]
 struct Batch {
     /// What a thread uses again for the next points: as many as there were at most.
-    fans: Vec<Fan>,
+    new_rings: Vec<NewRing>,
     directions: Directions,
     gaps: Angles,
 }
@@ -155,11 +155,11 @@ impl Batch {
         class: u32,
         limit: u32,
     ) {
-        self.fans.resize_with(points.len().max(self.fans.len()), Fan::default);
-        let fans = &mut self.fans[..points.len()];
+        self.new_rings.resize_with(points.len().max(self.new_rings.len()), NewRing::default);
+        let new_rings = &mut self.new_rings[..points.len()];
         self.directions.clear();
-        for (fan, &p) in fans.iter_mut().zip(points) {
-            fan.gather(
+        for (ring, &p) in new_rings.iter_mut().zip(points) {
+            ring.gather(
                 stage,
                 p as usize,
                 &shared.samples,
@@ -171,20 +171,20 @@ impl Batch {
         self.directions.find();
         self.gaps.clear();
         let mut angles = &*self.directions.angles;
-        fans.iter_mut().for_each(|fan| fan.start(&mut angles, &mut self.gaps));
+        new_rings.iter_mut().for_each(|ring| ring.start(&mut angles, &mut self.gaps));
         let mut goes_on = true;
         while goes_on {
             self.gaps.find_gaps(stage.params.effective_plain_angle());
-            fans.iter_mut().for_each(|fan| fan.take_gaps(&self.gaps));
+            new_rings.iter_mut().for_each(|ring| ring.take_gaps(&self.gaps));
             self.gaps.clear();
             goes_on = false;
-            for fan in fans.iter_mut().filter(|fan| !fan.is_complete) {
+            for ring in new_rings.iter_mut().filter(|ring| !ring.is_complete) {
                 goes_on = true;
-                if let Some(inserted) = fan.step(stage, &mut self.gaps) {
+                if let Some(inserted) = ring.step(stage, &mut self.gaps) {
                     shared.states[inserted as usize].store(class, Relaxed);
                 }
             }
         }
-        fans.iter_mut().for_each(|fan| fan.store_radii(stage, shared));
+        new_rings.iter_mut().for_each(|ring| ring.store_radii(stage, shared));
     }
 }
