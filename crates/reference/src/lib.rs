@@ -13,6 +13,7 @@ mod columns;
 pub mod commit;
 pub mod conflicts;
 mod contested;
+mod fan_triangle;
 mod fuzzy_planes;
 pub mod insertion;
 pub mod lists;
@@ -28,6 +29,7 @@ mod pool;
 mod refine;
 pub mod selection;
 mod sort_ring;
+mod triangle_homes;
 mod triangles;
 pub mod visible;
 
