@@ -9,8 +9,7 @@ use crate::Level;
 use crate::candidates::Candidates;
 use crate::lists::Lists;
 use crate::neighborhood::Rings;
-use crate::selection::precedes;
-use crate::visible::same_side;
+use crate::selection::{holds, precedes};
 use surfine_points::RefineParams;
 
 /// Whether contested candidates alone are asked. New points on curves, which no fan has, discard others wherever these are.
@@ -30,12 +29,8 @@ pub(crate) fn contested_overlaps(
             return;
         }
         for h in candidates.corners[x].iter().flat_map(|&p| candidates.own(rings, p as usize)) {
-            let offset = candidates.positions[x] - candidates.positions[h];
-            let sphere = params.lambda2 * candidates.sizes[h];
-            let (normal, other) = (candidates.normals[h], candidates.normals[x]);
             if h != x
-                && offset.dot(offset) < sphere * sphere
-                && same_side(params.rules, normal, other)
+                && holds(candidates, params, h, x)
                 && (precedes(candidates, h, x) || !is_contested(rings, candidates, h))
             {
                 list.items.push(h as u32);

@@ -11,7 +11,7 @@
 use crate::candidates::Candidates;
 use crate::coloring::scramble;
 use crate::insertion::{COVER, FREE, Insertion, raise};
-use crate::lists::Lists;
+use crate::lists::{Chunk, Lists};
 use crate::nearby::{Marks, Nearby};
 use crate::neighborhood::Rings;
 use crate::visible::{View, same_side};
@@ -37,32 +37,60 @@ pub fn overlaps(
     let [discarded] =
         Lists::in_chunks(candidates.len(), scratch, |(nearby, marks), own, [lists]| {
             for h in own.clone() {
-                let (position, radius) = (candidates.positions[h], sphere(h));
                 if candidates.exists(h) {
                     nearby.look(grid, h..own.end, |c| (candidates.positions[c], sphere(c)));
-                    // Most find themselves alone: to count costs less than to list.
-                    if nearby.count_in_ball(position, radius) > 1 {
-                        let view =
-                            View::new(level, candidates.seen(h, level), radius, params.rules);
-                        let inside = nearby.in_ball(position, radius, marks).iter();
-                        for x in inside.map(|&i| nearby.items[i as usize] as usize) {
-                            let offset = candidates.positions[x] - position;
-                            let is_discarded = precedes(candidates, h, x)
-                                && offset.dot(offset) < radius * radius
-                                && same_side(
-                                    params.rules,
-                                    candidates.normals[h],
-                                    candidates.normals[x],
-                                )
-                                && view.as_ref().is_none_or(|v| v.sees(candidates.seen(x, level)));
-                            lists.offer(x as u32, is_discarded);
-                        }
-                    }
+                    list_discarded(level, candidates, params, h, nearby, marks, lists);
                 }
                 lists.end();
             }
         });
     discarded.mirrored()
+}
+
+/// Lists the candidates near by that `h` discards.
+fn list_discarded(
+    level: &Level,
+    candidates: &Candidates,
+    params: &RefineParams,
+    h: usize,
+    nearby: &Nearby,
+    marks: &mut Marks,
+    list: &mut Chunk<u32>,
+) {
+    let (position, radius) = (candidates.positions[h], params.lambda2 * candidates.sizes[h]);
+    // Most find themselves alone: to count costs less than to list.
+    if nearby.count_in_ball(position, radius) <= 1 {
+        return;
+    }
+    let view = View::new(level, candidates.seen(h, level), radius, params.rules);
+    for &i in nearby.in_ball(position, radius, marks) {
+        let x = nearby.items[i as usize];
+        list.offer(x, discards(level, candidates, params, view.as_ref(), h, x as usize));
+    }
+}
+
+/// Whether a candidate discards another one: is decided before it, and has it in its discard sphere and on its sheet.
+#[inline(always)]
+fn discards(
+    level: &Level,
+    candidates: &Candidates,
+    params: &RefineParams,
+    view: Option<&View<'_>>,
+    h: usize,
+    x: usize,
+) -> bool {
+    precedes(candidates, h, x)
+        && holds(candidates, params, h, x)
+        && view.is_none_or(|view| view.sees(candidates.seen(x, level)))
+}
+
+/// Whether a candidate lies in the discard sphere (eq. 11) of `h` and on the same side of the surface.
+#[inline(always)]
+pub(crate) fn holds(candidates: &Candidates, params: &RefineParams, h: usize, x: usize) -> bool {
+    let offset = candidates.positions[x] - candidates.positions[h];
+    let sphere = params.lambda2 * candidates.sizes[h];
+    offset.dot(offset) < sphere * sphere
+        && same_side(params.rules, candidates.normals[h], candidates.normals[x])
 }
 
 /// Whether a candidate is decided before another one. Points on curves are inserted before all others, whatever their place.

@@ -6,6 +6,10 @@
 //! as far as the curves nearby can tell. It filters `N^E` and who discards whom, by the
 //! paper's loop N' and Y; no step averages across a crease.
 
+mod fences;
+
+pub use fences::FENCE_REACH;
+
 use crate::Level;
 use crate::math::{direction_angle, is_apart};
 use glam::Vec3;
@@ -22,9 +26,6 @@ pub const STEEP: f32 = 0.75;
 pub const BEHIND: f32 = -0.35;
 /// Crease points see each other if neither lies behind the other by more than this cosine.
 pub const CREASE_BEHIND: f32 = -0.3;
-/// Segments can separate two points if their middle is within this share of the points' distance, and half of the longest
-/// segment, from the middle of the points.
-pub const AROUND: f32 = 0.75;
 
 /// The curves of a level, ready for queries.
 #[derive(Clone, Debug, PartialEq)]
@@ -116,42 +117,6 @@ impl Curves {
             && (r.is_boundary() || u.dot(r.conormal) > CREASE_BEHIND)
             && (q.is_boundary() || -u.dot(q.conormal) > CREASE_BEHIND)
     }
-
-    /// Whether a crease segment runs between two points: they lie on different sides of it at an end, and the shortest way
-    /// between them over the unfolded sides crosses it.
-    fn separates(&self, segment: u32, a: Seen, b: Seen, rules: Rules) -> bool {
-        let sides = self.features.segments[segment as usize].sides;
-        let ends = sides[0].map(|r| self.record(r));
-        let touches = |x: Seen| {
-            x.record != NONE
-                && (self.record(x.record).segment == segment
-                    || ends.iter().any(|end| end.first == self.record(x.record).first))
-        };
-        if touches(a) || touches(b) || !crosses(ends.map(|end| end.position), a, b) {
-            return false;
-        }
-        (0..2).any(|end| {
-            // At a corner either may lie on a third side: this end can't tell then.
-            let own = [sides[0][end], sides[1][end]];
-            let (side_a, side_b) = (self.side(own[0], a, rules), self.side(own[0], b, rules));
-            side_a != side_b && own.contains(&side_a) && own.contains(&side_b)
-        })
-    }
-}
-
-/// Whether the straight way between two points over the unfolded sides of a segment meets it.
-fn crosses([from, to]: [Vec3; 2], a: Seen, b: Seen) -> bool {
-    let v = to - from;
-    let inverse = 1.0 / v.dot(v);
-    let place = |x: Seen| {
-        let d = x.position - from;
-        let t = d.dot(v) * inverse;
-        let off = d - v * t;
-        (t, off.dot(off).sqrt())
-    };
-    let ((ta, ha), (tb, hb)) = (place(a), place(b));
-    let crossing = ta * hb + tb * ha;
-    crossing >= 0.0 && crossing <= ha + hb
 }
 
 /// Whether normals are on one side of the surface, so that their points see each other.
@@ -181,11 +146,7 @@ impl<'a> View<'a> {
     /// The view of a point, old or new, as far as the radius; `None` where there are no curves, and every point sees all others.
     pub(crate) fn new(level: &'a Level, center: Seen, radius: f32, rules: Rules) -> Option<Self> {
         let curves = level.curves.as_ref()?;
-        let mut fences = Vec::new();
-        if rules.separating_segments && !curves.grid.items.is_empty() {
-            let reach = (AROUND + 0.5) * radius + curves.reach;
-            curves.grid.visit_ball(center.position, reach, |s, _| fences.push(s));
-        }
+        let fences = curves.fences(center.position, radius, rules);
         Some(Self { curves, center, fences, radius, rules })
     }
 
@@ -212,24 +173,5 @@ impl<'a> View<'a> {
                 in_wedge(curves.record(r), d) && curves.records_see(self.center, other, rules)
             }
         }
-    }
-
-    /// Whether a crease runs between the point and another one within the radius.
-    fn is_fenced(&self, other: Seen) -> bool {
-        let curves = self.curves;
-        let d = other.position - self.center.position;
-        let d2 = d.dot(d);
-        let turns = self.center.normal.dot(other.normal) <= curves.softest;
-        if !turns || !is_apart(d2, self.radius) {
-            return false;
-        }
-        let middle = self.center.position + d * 0.5;
-        let reach = AROUND * d2.sqrt() + curves.reach;
-        self.fences.iter().any(|&s| {
-            let ends = curves.features.segments[s as usize].sides[0];
-            let [a, b] = ends.map(|r| curves.record(r).position);
-            let off = (a + b) * 0.5 - middle;
-            off.dot(off) <= reach * reach && curves.separates(s, self.center, other, self.rules)
-        })
     }
 }
