@@ -1,9 +1,5 @@
 // Cells of a uniform grid that wraps around. Twin: crates/points/src/grid.rs
 
-fn cell_count() -> u32 {
-    return 1u << (params.bits.x + params.bits.y + params.bits.z);
-}
-
 fn cell_coordinates(x: vec3<f32>) -> vec3<i32> {
     return vec3<i32>(floor((x - params.origin) * params.inverse_cell));
 }
