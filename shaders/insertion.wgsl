@@ -1,7 +1,7 @@
 // insertion: completes the new neighbourhood N' of each point of one class (section 5).
 // Twin: crates/reference/src/insertion.rs
-// N' is in shared/new_ring.wgsl, the choice of a candidate in shared/choice.wgsl, eq. 11 in shared/discard.wgsl, the radii in
-// shared/next_radii.wgsl.
+// N' is in shared/new_ring.wgsl, what it starts with in shared/gather.wgsl, the gaps between its members in shared/gaps.wgsl,
+// the choice of a candidate in shared/choice.wgsl, eq. 11 in shared/discard.wgsl, the radii in shared/next_radii.wgsl.
 // One invocation per point of the class. dispatch: the class from 1, its first member, its size, number of classes.
 //
 // Only candidates that earlier classes inserted are seen, so it does not matter when the members of one class run.
@@ -79,61 +79,6 @@ fn insertion(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
 fn count_members(p: u32) -> u32 {
     // Each candidate can enter N' or bring in one point of Y, and curves bound gaps.
     return fans[p].around.y + fans[p].slots.y + 3u;
-}
-
-/// Starts N' with the new points nearer than λ1 r, and Y with the others nearer than r (eq. 10).
-fn gather(p: u32) {
-    let near = fans[p].near;
-    let list = fans[p].around;
-    // First the inserted ones are listed where Y will be: loops over few are cheaper than branches.
-    var size = 0u;
-    for (var i = list.x; i < list.x + list.y; i++) {
-        let c = around[i];
-        set_word(OUTER, size, c);
-        // Inserted by an earlier class.
-        size += u32(atomicLoad(&candidates[c].state) < dispatch.x);
-    }
-    for (var i = 0u; i < size; i++) {
-        let c = word(OUTER, i);
-        let there = candidates[c].place;
-        let d = there.xyz - ring.center;
-        let d2 = dot3(d, d);
-        let sphere = params.lambda2 * there.w;
-        // A new point in the centre's own place has no direction: it can only discard.
-        let joins = d2 < near * near & is_apart(d2, ring.radius);
-        if joins {
-            place(c, d, candidates[c].normal, sphere);
-        }
-        set_word(OUTER, ring.outer_size, c);
-        set_vector(OUTER_OFFSET, ring.outer_size, d);
-        set_number(OUTER_SPHERE, ring.outer_size, sphere);
-        ring.outer_size += u32(!joins & d2 < ring.radius * ring.radius);
-    }
-    add_bounds();
-}
-
-/// Lists the candidates of the fan that are not in N'.
-fn gather_own(slots: vec2<u32>, near: f32) {
-    for (var slot = slots.x; slot < slots.x + slots.y; slot++) {
-        // Slots without a triangle have one that does not exist.
-        let c = of_slot[slot];
-        let at = min(c, params.candidates - 1u);
-        let there = candidates[at].place;
-        let d = there.xyz - ring.center;
-        let d2 = dot3(d, d);
-        let is_there = atomicLoad(&candidates[at].state) < dispatch.x;
-        let is_new = is_there & d2 < near * near & is_apart(d2, ring.radius);
-        set_word(OWN, ring.own, c);
-        set_number(OWN_ANGLE, ring.own, angle_of(d));
-        set_vector(OWN_OFFSET, ring.own, d);
-        set_number(OWN_INVERSE, ring.own, 1.0 / sqrt(d2));
-        ring.own += u32(c != NONE & there.w > 0.0 & !is_new);
-    }
-    for (var k = 0u; k < ring.own; k++) {
-        let closest = discarded_by_outer(k);
-        set_word(OWN_OUTER, k, closest.c);
-        set_number(OWN_SQUARED, k, closest.squared);
-    }
 }
 
 /// Splits the widest gap until none is as wide as θ_c or no candidate is left. Each candidate is tried once.

@@ -458,7 +458,7 @@ fn constants_are_those_of_the_reference() {
         ("visible", "STEEP_SIDE", visible::STEEP.to_bits()),
         ("visible", "BEHIND", visible::BEHIND.to_bits()),
         ("visible", "CREASE_BEHIND", visible::CREASE_BEHIND.to_bits()),
-        ("visible", "AROUND", visible::AROUND.to_bits()),
+        ("fences", "FENCE_REACH", visible::FENCE_REACH.to_bits()),
         ("curves", "RECORD_WORDS", RECORD_WORDS as u32),
         ("curves", "SEGMENT_WORDS", SEGMENT_WORDS as u32),
         ("records", "LEVEL_BITS", records::LEVEL_BITS),

@@ -1,6 +1,6 @@
-// The candidate that is tried next (section 5). Twins: `closest` and `best_split` in crates/reference/src/fan.rs
+// The candidate that is tried next (section 5). Twin: crates/reference/src/new_ring/choice.rs
 //
-// Expects what insertion.wgsl and new_ring.wgsl have. Candidates are those of the row OWN.
+// Expects what insertion.wgsl, new_ring.wgsl and gaps.wgsl have. Candidates are those of the row OWN.
 
 /// For an empty N': the candidate closest to the centre, the first of equals.
 fn closest_candidate() -> u32 {

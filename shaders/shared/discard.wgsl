@@ -1,4 +1,4 @@
-// The discard space (section 5, eq. 11). Twin: `discarded_by` in crates/reference/src/fan.rs
+// The discard space (section 5, eq. 11). Twin: crates/reference/src/new_ring/discard.rs
 //
 // Expects what insertion.wgsl and new_ring.wgsl have.
 

@@ -1,11 +1,6 @@
-// The new neighbourhood N' of one point while it is refined. Twin: `Fan` in crates/reference/src/fan.rs
+// The new neighbourhood N' of one point while it is refined. Twin: crates/reference/src/new_ring.rs
 //
 // Expects what insertion.wgsl declares. Members keep their number; the row ORDER sorts them by angle.
-
-/// Whether angles between new neighbours are straight instead of curved.
-override plain_angle: bool = false;
-/// A rule beyond the paper: see `Rules` in crates/points/src/params.rs.
-override curve_bounds: bool = true;
 
 /// A gap or an angle must be wider by this factor to be preferred to an earlier one: regular grids tie.
 const HYSTERESIS: f32 = 1.00001;
@@ -53,56 +48,8 @@ fn is_bound(id: u32) -> bool {
     return with_curves && id >= params.candidates;
 }
 
-/// Where a step keeps the curves, the neighbours of a point along them bound its gaps, though they are not new.
-fn add_bounds() {
-    if !with_curves || ring.record == NONE || !curve_bounds || params.candidates > params.triangles {
-        return;
-    }
-    let partners = record_partners(ring.record);
-    for (var k = 0u; k < 2u; k++) {
-        if partners[k] != NONE {
-            let q = record_point(partners[k]);
-            place(params.candidates + q, points[q].position - ring.center, points[q].normal, 0.0);
-        }
-    }
-}
-
 fn angle_of(d: vec3<f32>) -> f32 {
     return direction_angle(dot3(d, ring.e2), dot3(d, ring.e1));
-}
-
-fn next_member(i: u32) -> u32 {
-    return select(i + 1u, 0u, i + 1u == ring.size);
-}
-
-/// Directed angle on the tangent plane from the member at place i to the next one, in [0, 2π]. A sheet that ends at the
-/// centre has no next one after the last.
-fn directed_gap(i: u32) -> f32 {
-    let last = i + 1u == ring.size;
-    if last && ring.record != NONE {
-        return TAU;
-    }
-    let to = number(ANGLE, word(ORDER, next_member(i)));
-    return select(to, to + TAU, last) - number(ANGLE, word(ORDER, i));
-}
-
-/// Angle from the member at place i to the next one: curved (eq. 5), or plain; directed from π on.
-fn measured_gap(i: u32) -> f32 {
-    if ring.record != NONE && i + 1u == ring.size {
-        return 0.0;
-    }
-    let directed = directed_gap(i);
-    if directed >= PI {
-        return directed;
-    }
-    let a = word(ORDER, i);
-    let b = word(ORDER, next_member(i));
-    let from_a = vector(OFFSET, a) * ring.inverse_radius;
-    let from_b = vector(OFFSET, b) * ring.inverse_radius;
-    if plain_angle {
-        return angle_between(from_a, from_b);
-    }
-    return curved_angle(Corner(from_a, vector(NORMAL, a)), Corner(from_b, vector(NORMAL, b)));
 }
 
 /// Puts a new point into its place in N', by angle, ties by index, and returns that. Gaps move along.
@@ -150,15 +97,4 @@ fn add(c: u32) {
         set_number(GAP, gap, measured_gap(gap));
         gap = at;
     }
-}
-
-/// The first of the widest gaps.
-fn widest_gap() -> u32 {
-    var widest = 0u;
-    for (var i = 1u; i < ring.size; i++) {
-        if number(GAP, i) > number(GAP, widest) * HYSTERESIS {
-            widest = i;
-        }
-    }
-    return widest;
 }

@@ -1,6 +1,6 @@
-// Radii at the next level (section 5, end). Twin: `store_radii` in crates/reference/src/fan.rs
+// Radii at the next level (section 5, end). Twin: crates/reference/src/new_ring/next_radii.rs
 //
-// Expects `next_radii` and what new_ring.wgsl has.
+// Expects `next_radii` and what new_ring.wgsl and gaps.wgsl have.
 
 /// The centre's radius covers N', those of N' cover the centre and their neighbours there. A point without new
 /// neighbours keeps its radius.

@@ -63,6 +63,7 @@ const NEIGHBORHOOD: [Shader; 2] = with_rows!(
     "curves",
     "segments",
     "visible",
+    "fences",
     "cut_loops"
 );
 
@@ -81,6 +82,7 @@ const CONFLICTS: [Shader; 2] = with_rows!(
     "curves",
     "segments",
     "visible",
+    "fences",
     "cut_loops"
 );
 
@@ -88,6 +90,8 @@ const INSERTION: [Shader; 2] = with_rows!(
     "insertion",
     "insertion_large",
     "new_ring",
+    "gather",
+    "gaps",
     "choice",
     "discard",
     "next_radii",
@@ -137,6 +141,7 @@ pub const SHADERS: &[Shader] = &[
         "curves",
         "segments",
         "visible",
+        "fences",
         "cut_loops"
     ),
     shader!("selection_contested", "cut_loops"),
