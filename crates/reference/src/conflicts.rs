@@ -12,7 +12,7 @@ use crate::candidates::Candidates;
 use crate::coloring::scramble;
 use crate::columns::vectorized;
 use crate::insertion::COVER;
-use crate::lists::{Chunk, Lists};
+use crate::lists::{Chunk, Lists, TooLong};
 use crate::nearby::{Marks, Nearby};
 use crate::neighborhood::Rings;
 use crate::visible::{Seen, View};
@@ -38,13 +38,16 @@ pub struct Conflicts {
 const BATCH: usize = 64;
 
 /// Finds the candidates around each point and computes `T`.
+///
+/// # Errors
+/// Too long lists.
 pub fn conflicts(
     level: &Level,
     rings: &Rings,
     candidates: &Candidates,
     candidate_grid: &Grid,
     params: &RefineParams,
-) -> Conflicts {
+) -> Result<Conflicts, TooLong> {
     let widest = candidates.rho.par_iter().copied().reduce(|| 0.0, f32::max) * params.lambda2;
     let search = Search { level, candidates, grid: candidate_grid, params, widest };
     let [around, before, after] = Lists::in_chunks(
@@ -63,8 +66,8 @@ pub fn conflicts(
                 }
             }
         },
-    );
-    Conflicts { around, before: with_others(&before, &after) }
+    )?;
+    Ok(Conflicts { around, before: with_others(&before, &after)? })
 }
 
 /// What a thread uses again for the next points.
@@ -244,12 +247,12 @@ impl Reach {
 }
 
 /// Both ends of a conflict see it only where their reaches are alike: adds those that the one who chooses before found alone.
-fn with_others(before: &Lists, after: &Lists) -> Lists {
+fn with_others(before: &Lists, after: &Lists) -> Result<Lists, TooLong> {
     let alone = Lists::make(before.len(), |p, alone| {
         for &q in after.of(p) {
             alone.offer(q, !holds(before.of(q as usize), p as u32));
         }
-    });
+    })?;
     let others = alone.mirrored();
     Lists::make(before.len(), |p, all| {
         all.items.extend_from_slice(before.of(p));

@@ -7,7 +7,7 @@
 
 use crate::Level;
 use crate::candidates::Candidates;
-use crate::lists::Lists;
+use crate::lists::{Lists, TooLong};
 use crate::neighborhood::Rings;
 use crate::selection::{holds, precedes};
 use surfine_points::RefineParams;
@@ -23,7 +23,7 @@ pub(crate) fn contested_overlaps(
     rings: &Rings,
     candidates: &Candidates,
     params: &RefineParams,
-) -> Lists {
+) -> Result<Lists, TooLong> {
     Lists::make(candidates.len(), |x, list| {
         if !candidates.exists(x) || !is_contested(rings, candidates, x) {
             return;

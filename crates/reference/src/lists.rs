@@ -6,6 +6,10 @@ use std::ops::Range;
 /// Points whose lists one thread makes before it takes the next ones.
 const CHUNK: usize = 1024;
 
+/// The lists of a level have more entries together than 32 bits number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TooLong;
+
 /// One list a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lists<T = u32> {
@@ -23,15 +27,18 @@ impl<T> Default for Lists<T> {
 
 impl<T: Copy + Default + Send + Sync> Lists<T> {
     /// Makes the lists of so many points on all cores: `make` appends that of a point.
-    pub(crate) fn make(points: usize, make: impl Fn(usize, &mut Chunk<T>) + Sync) -> Self {
+    pub(crate) fn make(
+        points: usize,
+        make: impl Fn(usize, &mut Chunk<T>) + Sync,
+    ) -> Result<Self, TooLong> {
         let make = |(): &mut (), points: Range<usize>, [lists]: &mut [Chunk<T>; 1]| {
             for p in points {
                 make(p, lists);
                 lists.end();
             }
         };
-        let [lists] = Self::in_chunks(points, || (), make);
-        lists
+        let [lists] = Self::in_chunks(points, || (), make)?;
+        Ok(lists)
     }
 
     /// Makes some lists for each point, those of many points at once: `make` appends and ends them. `scratch` makes what a thread
@@ -40,7 +47,7 @@ impl<T: Copy + Default + Send + Sync> Lists<T> {
         points: usize,
         scratch: impl Fn() -> S + Sync,
         make: impl Fn(&mut S, Range<usize>, &mut [Chunk<T>; N]) + Sync,
-    ) -> [Self; N] {
+    ) -> Result<[Self; N], TooLong> {
         let init = || (scratch(), [0; N]);
         let chunks: Vec<[Chunk<T>; N]> = (0..points.div_ceil(CHUNK))
             .into_par_iter()
@@ -53,7 +60,12 @@ impl<T: Copy + Default + Send + Sync> Lists<T> {
                 lists
             })
             .collect();
-        std::array::from_fn(|k| Self::join(chunks.iter().map(|lists| &lists[k])))
+        // Beyond, the places of lists would wrap around.
+        let total = |k: usize| chunks.iter().map(|lists| lists[k].items.len()).sum::<usize>();
+        if (0..N).any(|k| u32::try_from(total(k)).is_err()) {
+            return Err(TooLong);
+        }
+        Ok(std::array::from_fn(|k| Self::join(chunks.iter().map(|lists| &lists[k]))))
     }
 
     fn join<'a>(chunks: impl Iterator<Item = &'a Chunk<T>> + Clone) -> Self
@@ -183,5 +195,25 @@ impl Lists {
             }
         }
         Self { starts, items }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_of_more_entries_than_32_bits_number_are_refused() {
+        // Entries without a size take no memory, however many there are.
+        let lists = |each: usize| {
+            Lists::make(3 * CHUNK, |_, list: &mut Chunk<()>| {
+                list.items.resize(list.items.len() + each, ());
+            })
+        };
+        let most = u32::MAX as usize / (3 * CHUNK);
+        let all = lists(most).expect("they are numbered");
+        assert_eq!(all.items.len(), 3 * CHUNK * most);
+        assert_eq!(all.range(3 * CHUNK - 1).end, all.items.len());
+        assert_eq!(lists(most + 1), Err(TooLong));
     }
 }

@@ -79,7 +79,8 @@ pub fn neighborhood(level: &Level, grid: &Grid, params: &RefineParams) -> Rings 
             }
         }
         ball_neighbors.fetch_add(size, Relaxed);
-    });
+    })
+    .expect("rings have fewer than seven members in the mean");
     Rings { lists, ball_neighbors: ball_neighbors.into_inner() }
 }
 

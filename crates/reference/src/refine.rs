@@ -8,7 +8,7 @@ use crate::commit::commit;
 use crate::conflicts::{Conflicts, conflicts};
 use crate::contested::{asks_contested_alone, contested_overlaps};
 use crate::insertion::{Insertion, Order, Stage, insertion};
-use crate::lists::Lists;
+use crate::lists::{Lists, TooLong};
 use crate::neighborhood::{Rings, neighborhood};
 use crate::next_ring::{Covers, next_ring};
 use crate::selection::{overlaps, selection};
@@ -56,7 +56,7 @@ impl From<ParamError> for Error {
 }
 
 /// Points of a level that is refined: seven candidates a point are the most that occur in the mean, and their slots
-/// are numbered in 32 bits.
+/// are numbered in 32 bits. Lists of other lengths are counted when they are made ([`TooLong`]).
 const LARGEST_LEVEL: usize = (u32::MAX / 7) as usize;
 
 /// Refines a point set.
@@ -96,17 +96,13 @@ pub fn refine_with(
             progress(Progress { level: step, levels: params.levels, stage, points: size });
         };
         let mut clock = Clock { start: &mut tell, times: Vec::new() };
-        let mut sight = Sight::of(&level, params, &mut clock);
-        let searches = step == 1 && params.boundary != Boundary::None;
-        if searches && clock.time("boundary", || boundary(&mut level, &sight.rings, points, params))
-        {
-            sight = Sight::of(&level, params, &mut clock);
-        }
+        let sight = look(&mut level, points, params, &mut clock);
         if let (1, Some(curves)) = (step, &level.curves) {
             result.curves = curves.features.counts();
         }
         level.begin_step(params.rules);
-        let (state, mut report) = run_stages(&level, sight, params, order, &mut clock);
+        let stages = run_stages(&level, sight, params, order, &mut clock);
+        let (state, mut report) = stages.map_err(|TooLong| Invalid::TooMany(size))?;
         let parents = clock.time("commit", || commit(&mut level, &state));
         report.stages = clock.times;
         report.points_out = level.len();
@@ -169,6 +165,21 @@ impl Sight {
     }
 }
 
+/// The neighbourhoods of a level; of the input once its boundaries are found, which bound them.
+fn look(
+    level: &mut Level,
+    points: &PointSet,
+    params: &RefineParams,
+    clock: &mut Clock<'_>,
+) -> Sight {
+    let sight = Sight::of(level, params, clock);
+    let searches = level.step == 0 && params.boundary != Boundary::None;
+    if searches && clock.time("boundary", || boundary(level, &sight.rings, points, params)) {
+        return Sight::of(level, params, clock);
+    }
+    sight
+}
+
 /// Everything that one refinement step computes before its commit.
 #[derive(Clone, Debug)]
 #[expect(missing_docs, reason = "each field is the output of the stage of that name")]
@@ -187,6 +198,9 @@ pub struct LevelState {
 }
 
 /// Runs the stages of one refinement step up to the commit.
+///
+/// # Panics
+/// If there are so many points that their lists have more entries than 32 bits number.
 pub fn run_level(
     level: &Level,
     params: &RefineParams,
@@ -195,7 +209,8 @@ pub fn run_level(
 ) -> (LevelState, LevelReport) {
     let mut clock = Clock { start: progress, times: Vec::new() };
     let sight = Sight::of(level, params, &mut clock);
-    let (state, report) = run_stages(level, sight, params, order, &mut clock);
+    let stages = run_stages(level, sight, params, order, &mut clock);
+    let (state, report) = stages.expect("32 bits number the entries of all lists");
     (state, LevelReport { stages: clock.times, ..report })
 }
 
@@ -206,7 +221,7 @@ fn run_stages(
     params: &RefineParams,
     order: Order,
     clock: &mut Clock<'_>,
-) -> (LevelState, LevelReport) {
+) -> Result<(LevelState, LevelReport), TooLong> {
     let candidates = clock.time("candidates", || candidates(level, &rings, params));
     let first = if params.rules.largest_first { "selection" } else { "conflicts" };
     let candidate_grid = clock.time(first, || {
@@ -225,12 +240,12 @@ fn run_stages(
         covers: Covers::default(),
     };
     if params.rules.largest_first {
-        clock.time("selection", || state.select(level, params));
+        clock.time("selection", || state.select(level, params))?;
     } else {
         let LevelState { rings, candidates, candidate_grid, .. } = &state;
         let grid = candidate_grid.as_ref().expect("only a selection of the largest does without");
         let graph = || conflicts(level, rings, candidates, grid, params);
-        state.conflicts = clock.time("conflicts", graph);
+        state.conflicts = clock.time("conflicts", graph)?;
         state.classes = clock.time("coloring", || coloring(&state.conflicts.before));
         let insert = || insertion(state.stage(level, params), &state.classes, order);
         state.insertion = clock.time("insertion", insert);
@@ -246,7 +261,7 @@ fn run_stages(
         isolated: (0..level.len()).filter(|&p| rings.ring(p).is_empty()).count(),
         ..LevelReport::default()
     };
-    (state, report)
+    Ok((state, report))
 }
 
 impl LevelState {
@@ -257,14 +272,15 @@ impl LevelState {
     }
 
     /// Selects the new points, the largest triangles first.
-    fn select(&mut self, level: &Level, params: &RefineParams) {
+    fn select(&mut self, level: &Level, params: &RefineParams) -> Result<(), TooLong> {
         let Self { rings, candidates, candidate_grid, .. } = self;
         self.overlaps = match candidate_grid {
             Some(grid) => overlaps(level, candidates, grid, params),
             None => contested_overlaps(rings, candidates, params),
-        };
+        }?;
         (self.insertion, self.conflicts.around) =
-            selection(level, rings, candidates, &self.overlaps, params);
+            selection(level, rings, candidates, &self.overlaps, params)?;
+        Ok(())
     }
 }
 

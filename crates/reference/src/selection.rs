@@ -11,7 +11,7 @@
 use crate::candidates::Candidates;
 use crate::coloring::scramble;
 use crate::insertion::{COVER, FREE, Insertion, raise};
-use crate::lists::{Chunk, Lists};
+use crate::lists::{Chunk, Lists, TooLong};
 use crate::nearby::{Marks, Nearby};
 use crate::neighborhood::Rings;
 use crate::visible::{View, same_side};
@@ -26,12 +26,15 @@ use surfine_points::{Grid, RefineParams};
 const INSERTED: u32 = 1;
 
 /// For each candidate those whose discard sphere holds it, of those before it.
+///
+/// # Errors
+/// Too long lists.
 pub fn overlaps(
     level: &Level,
     candidates: &Candidates,
     grid: &Grid,
     params: &RefineParams,
-) -> Lists {
+) -> Result<Lists, TooLong> {
     let sphere = |c: usize| params.lambda2 * candidates.sizes[c];
     let scratch = <(Nearby, Marks)>::default;
     let [discarded] =
@@ -43,8 +46,8 @@ pub fn overlaps(
                 }
                 lists.end();
             }
-        });
-    discarded.mirrored()
+        })?;
+    Ok(discarded.mirrored())
 }
 
 /// Lists the candidates near by that `h` discards.
@@ -106,13 +109,16 @@ fn rank(candidates: &Candidates, c: usize) -> (u32, u32) {
 
 /// Selects the new points, and gives all points their radii. Returns the new neighbourhoods too, each with its members once; they
 /// are empty where [`crate::next_ring`] does not ask for them.
+///
+/// # Errors
+/// Too long lists.
 pub fn selection(
     level: &Level,
     rings: &Rings,
     candidates: &Candidates,
     overlaps: &Lists,
     params: &RefineParams,
-) -> (Insertion, Lists) {
+) -> Result<(Insertion, Lists), TooLong> {
     let states = select(candidates, overlaps);
     let stands_for: Vec<u32> = (0..candidates.len())
         .into_par_iter()
@@ -134,7 +140,7 @@ pub fn selection(
             }
             lists.end();
         }
-    });
+    })?;
     let cover = |square: AtomicU32| COVER * f32::from_bits(square.into_inner()).sqrt();
     let radii = own.into_par_iter().map(cover).zip(&level.radii);
     let radii = radii.map(|(radius, &old)| if radius == 0.0 { old } else { radius }).collect();
@@ -143,7 +149,7 @@ pub fn selection(
     for (radius, point) in on_curve.iter_mut().zip(&level.curve_points) {
         *radius = radius.max(point.radius);
     }
-    (Insertion { states, candidate_radii, radii }, members)
+    Ok((Insertion { states, candidate_radii, radii }, members))
 }
 
 /// Who stands for a candidate of a fan.
