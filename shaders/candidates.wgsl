@@ -33,7 +33,7 @@ fn candidates(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgro
     }
 }
 
-/// Notes the largest ρ, for the paper's selection. Most are no larger than what is known: to look costs less than to write.
+/// Notes the largest ρ, for the paper's loop. Most are no larger than what is known: to look costs less than to write.
 fn note_rho(rho: f32) {
     if !largest_first && bitcast<u32>(rho) > atomicLoad(&counters.widest) {
         atomicMax(&counters.widest, bitcast<u32>(rho));

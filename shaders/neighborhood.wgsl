@@ -16,10 +16,10 @@
 /// A rule beyond the paper: see `Rules` in crates/points/src/params.rs.
 override natural_neighbors: bool = true;
 
-// Rows: a member's index, what became of it, its angle, its place on the tangent plane, its height over it (of the fuzzy
+// Rows: a member's index, the verdict on it, its angle, its place on the tangent plane, its height over it (of the fuzzy
 // neighbourhood), and the members of the ring in order.
 const ID: u32 = 0u;
-const FATE: u32 = 1u;
+const VERDICT: u32 = 1u;
 const ANGLE: u32 = 2u;
 const X: u32 = 3u;
 const Y: u32 = 4u;
@@ -31,10 +31,10 @@ const CAPACITY: u32 = 40u;
 /// Members of most neighbourhoods: loops over these are unrolled.
 const MOST: u32 = 8u;
 
-// What becomes of a member. Doubtful ones may lie on another sheet.
+// Verdicts on a member. Doubtful ones may lie on another sheet.
 const KEPT: u32 = 0u;
 const REMOVED: u32 = 1u;
-const DOUBTFUL: u32 = 2u;
+const DOUBT: u32 = 2u;
 
 @compute @workgroup_size(64)
 fn neighborhood(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -60,8 +60,8 @@ fn neighborhood(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workg
     count_ball(size);
     let members = keep_consistent(p, size);
     for (var i = 0u; i < members; i++) {
-        if word(FATE, i) == KEPT && is_behind(i, members) {
-            set_word(FATE, i, REMOVED);
+        if word(VERDICT, i) == KEPT && is_behind(i, members) {
+            set_word(VERDICT, i, REMOVED);
         }
     }
     for (var i = 0u; i < members; i++) {
@@ -76,12 +76,12 @@ fn neighborhood(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workg
 }
 
 fn is_kept(j: u32) -> bool {
-    return word(FATE, j) == KEPT;
+    return word(VERDICT, j) == KEPT;
 }
 
 /// Whether a member hides nobody.
 fn is_left_out(j: u32) -> bool {
-    return word(FATE, j) == DOUBTFUL;
+    return word(VERDICT, j) == DOUBT;
 }
 
 fn count_ball(size: u32) {

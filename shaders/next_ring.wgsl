@@ -1,14 +1,14 @@
 // next_ring: radii that cover the next level's rings (ours). Twin: crates/reference/src/next_ring.rs
 // One invocation per point. dispatch: first point, number of points.
 //
-// The members of the old ring and of N' (by the paper's selection all inserted candidates within the new radius) go through the filter
+// The members of the old ring and of N' (by the paper's loop all inserted candidates within the new radius) go through the filter
 // of section 4; what is left must be within the radii, of the point and of the members alike. The radii are in shared/ahead.wgsl.
 
 @group(0) @binding(2) var<storage, read> points: array<Point>;
 @group(0) @binding(3) var<storage, read> fans: array<Fan>;
 @group(0) @binding(4) var<storage, read> ring_entries: array<vec2<u32>>;
 @group(0) @binding(5) var<storage, read> candidates: array<Candidate>;
-/// The members of N'; by the paper's selection lists of candidates around points and of conflicts.
+/// The members of N'; by the paper's loop lists of candidates around points and of conflicts.
 @group(0) @binding(6) var<storage, read> around: array<u32>;
 /// Bits of the radii at the next level: of the points, then of the candidates; then of the points by this kernel, which reads the
 /// first ones.
@@ -37,12 +37,14 @@ const CAPACITY: u32 = 48u;
 /// Members of most neighbourhoods: loops over these are unrolled.
 const MOST: u32 = 12u;
 
-struct Around {
-    center: vec3<f32>,
+/// The centre of a ring.
+struct Center {
+    position: vec3<f32>,
     radius: f32,
     normal: vec3<f32>,
     frame: TangentFrame,
-    size: u32,
+    /// Number of members that were added.
+    members: u32,
 }
 
 @compute @workgroup_size(64)
@@ -84,56 +86,56 @@ fn count_members(p: u32) -> u32 {
 
 /// Lists the members of the old ring, and of N' or the new points within the new radius.
 fn gather(p: u32) -> u32 {
-    let center = points[p];
-    var all = Around(center.position, center.radius, center.normal, frame_of(p), 0u);
+    let point = points[p];
+    var center = Center(point.position, point.radius, point.normal, frame_of(p), 0u);
     let slots = fans[p].slots;
     for (var slot = slots.x; slot < slots.x + slots.y; slot++) {
         let q = ring_entries[slot].x;
-        add(&all, q, points[q].position - all.center, points[q].normal);
+        add(&center, q, points[q].position - center.position, points[q].normal);
     }
     let list = fans[p].around;
     if largest_first {
         for (var i = list.x; i < list.x + list.y; i++) {
             let c = around[i];
-            add(&all, params.points + c, candidates[c].place.xyz - all.center, candidates[c].normal);
+            add(&center, params.points + c, candidates[c].place.xyz - center.position, candidates[c].normal);
         }
-        return all.size;
+        return center.members;
     }
     let radius = bitcast<f32>(atomicLoad(&next_radii[p]));
     // First the new points are listed, then projected: loops over few are cheaper than branches.
     var size = 0u;
     for (var i = list.x; i < list.x + list.y; i++) {
         let c = around[i];
-        let d = candidates[c].place.xyz - all.center;
+        let d = candidates[c].place.xyz - center.position;
         set_word(ORDER, size, c);
         size += u32(candidates[c].state != FREE & dot3(d, d) <= radius * radius);
     }
     for (var i = 0u; i < size; i++) {
         let c = word(ORDER, i);
-        add(&all, params.points + c, candidates[c].place.xyz - all.center, candidates[c].normal);
+        add(&center, params.points + c, candidates[c].place.xyz - center.position, candidates[c].normal);
     }
-    return all.size;
+    return center.members;
 }
 
 /// Adds a member, unless it has no direction on the tangent plane.
-fn add(all: ptr<function, Around>, id: u32, d: vec3<f32>, normal: vec3<f32>) {
+fn add(center: ptr<function, Center>, id: u32, d: vec3<f32>, normal: vec3<f32>) {
     let d2 = dot3(d, d);
-    let x = dot3(d, (*all).frame.e1);
-    let y = dot3(d, (*all).frame.e2);
+    let x = dot3(d, (*center).frame.e1);
+    let y = dot3(d, (*center).frame.e2);
     let q2 = x * x + y * y;
-    let inverse = 1.0 / (*all).radius;
+    let inverse = 1.0 / (*center).radius;
     var scale = inverse;
     if accurate {
-        scale = (geodesic_distance(d, (*all).normal, normal) * inverse) / sqrt(q2);
+        scale = (geodesic_distance(d, (*center).normal, normal) * inverse) / sqrt(q2);
     }
-    let i = (*all).size;
+    let i = (*center).members;
     set_word(ID, i, id);
     set_number(X, i, x * scale);
     set_number(Y, i, y * scale);
     if !accurate {
-        set_number(HEIGHT, i, dot3(d, (*all).normal) * inverse);
+        set_number(HEIGHT, i, dot3(d, (*center).normal) * inverse);
     }
-    (*all).size += u32(is_apart(d2, (*all).radius) & q2 > 1e-12 * d2);
+    (*center).members += u32(is_apart(d2, (*center).radius) & q2 > 1e-12 * d2);
 }
 
 /// The place of a member.

@@ -54,7 +54,7 @@ fn keep_consistent(p: u32, size: u32) -> u32 {
             scale = (geodesic_distance(d, center.normal, normal) * inverse) / sqrt(q2);
         }
         set_word(ID, members, q);
-        set_word(FATE, members, select(KEPT, DOUBTFUL, is_doubtful(u, center.normal, normal)));
+        set_word(VERDICT, members, select(KEPT, DOUBT, is_doubtful(u, center.normal, normal)));
         set_number(X, members, x * scale);
         set_number(Y, members, y * scale);
         if !accurate {

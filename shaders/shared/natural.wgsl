@@ -6,7 +6,7 @@
 /// A ring gap from 100° on may miss a natural neighbour, radians.
 const OPEN_GAP: f32 = 1.7453293;
 
-/// Of members that come back: others are asked about while they are not there yet.
+/// The verdict on members that come back: others are asked about while they are not there yet.
 const BACK: u32 = 3u;
 
 /// Takes members back into a ring of that size, and returns its new size.
@@ -16,13 +16,13 @@ fn take_back(ring: u32, members: u32) -> u32 {
         return ring;
     }
     for (var i = 0u; i < members; i++) {
-        if word(FATE, i) != KEPT && is_in_open_gap(i, ring) && is_natural(i, members) {
-            set_word(FATE, i, BACK);
+        if word(VERDICT, i) != KEPT && is_in_open_gap(i, ring) && is_natural(i, members) {
+            set_word(VERDICT, i, BACK);
         }
     }
     for (var i = 0u; i < members; i++) {
-        if word(FATE, i) == BACK {
-            set_word(FATE, i, KEPT);
+        if word(VERDICT, i) == BACK {
+            set_word(VERDICT, i, KEPT);
         }
     }
     return sort_ring(members);

@@ -37,7 +37,7 @@ struct Candidate {
     /// Corners of its triangle, smallest index first and orientation kept.
     corners: vec3<u32>,
     /// ρ, or λ1 times the distance from its corners to their farthest neighbours in the mean, whichever is larger. By the paper's
-    /// selection, or if simplified, ρ.
+    /// loop, or if simplified, ρ.
     size: f32,
 }
 

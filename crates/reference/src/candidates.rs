@@ -37,7 +37,7 @@ pub struct Candidates {
     /// The candidate of each slot; [`NO_POINT`] for slots without a triangle.
     pub of_slot: Vec<u32>,
     /// Their sizes, by which the selection goes: ρ, or λ1 times the distance from the corners to their farthest neighbours in the
-    /// mean, whichever is larger; by the paper's selection, or if `simplified`, ρ. 0 where there is no candidate.
+    /// mean, whichever is larger; by the paper's loop, or if `simplified`, ρ. 0 where there is no candidate.
     pub sizes: Vec<f32>,
     /// Of each point: within this distance new points are new neighbours (section 5). For a selection among all candidates λ1
     /// times the distance to the farthest neighbour; 0 if `simplified`.

@@ -168,15 +168,15 @@ impl Search<'_> {
                 *met_by = if conflicts { p as u32 } else { *met_by };
             }
             let sees = |view: &View<'_>| view.sees(candidates.seen(c as usize, level));
-            around.offer(c, mark & AROUND != 0 && view.as_ref().is_none_or(sees));
+            around.offer(c, mark & IN_SIGHT != 0 && view.as_ref().is_none_or(sees));
         }
     }
 }
 
 /// Marks of candidates that conflict with others around a point.
 const CONFLICTS: u8 = 1;
-/// Marks of candidates that may be seen around a point.
-const AROUND: u8 = 2;
+/// Marks of candidates that the point lists, if no curve is in the way.
+const IN_SIGHT: u8 = 2;
 
 vectorized! {
     fn mark(
@@ -198,9 +198,9 @@ vectorized! {
             let squared = offset.dot(offset);
             let within = reach.of_candidate(spheres[i]);
             let faces = Vec3::new(nx[i], ny[i], nz[i]).dot(center.normal) > 0.0;
-            let is_around = (squared <= within * within) & (all_sides | faces);
+            let is_in_sight = (squared <= within * within) & (all_sides | faces);
             let conflicts = squared <= reach.conflicts * reach.conflicts;
-            marks[i] = (u8::from(conflicts) * CONFLICTS) | (u8::from(is_around) * AROUND);
+            marks[i] = (u8::from(conflicts) * CONFLICTS) | (u8::from(is_in_sight) * IN_SIGHT);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The insertion of new points (section 5), class by class. Twin: `shaders/insertion.wgsl`.
 //!
 //! Radii of the discard test are frozen at insertion and all other radii are maxima, so the points of one class give
-//! the same result together, in ascending or in descending order: that of the paper's sequential loop over
+//! the same result together, in ascending or in descending order: that of the paper's loop in the order
 //! (class, index).
 
 use crate::Level;

@@ -2,7 +2,7 @@
 //!
 //! The paper's new radius covers the new neighbours N' alone. On irregular samples the ring of a point at the next level
 //! also has old points in it, and triangles that N' does not know. So the ring is looked up ahead: the members of the
-//! old ring and of N' (by the paper's selection all new points nearby) go through the filter of section 4, and what is left must be within the radii, of
+//! old ring and of N' (by the paper's loop all new points nearby) go through the filter of section 4, and what is left must be within the radii, of
 //! the point and of the members alike.
 
 use crate::ball::Members;
