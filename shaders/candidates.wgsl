@@ -1,4 +1,5 @@
-// candidates: the possible new points of all fans (section 5, eq. 12). Twin: crates/reference/src/candidates.rs
+// candidates: the possible new points of all fans (section 5, eq. 12).
+// Twins: crates/reference/src/candidates.rs, of one triangle crates/reference/src/triangles.rs
 // One invocation per candidate. Those of triangles come first, then the new points on creases and boundaries.
 
 @group(0) @binding(2) var<storage, read> points: array<Point>;

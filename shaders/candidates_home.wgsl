@@ -1,5 +1,5 @@
 // candidates: to which point the triangle of each slot belongs, that it is one candidate though three fans have it.
-// Twin: `homes` in crates/reference/src/candidates.rs
+// Twins: `find_fan` and `home` in crates/reference/src/triangle_homes.rs, `near_radius` in crates/reference/src/candidates.rs
 // One invocation per point.
 
 @group(0) @binding(2) var<storage, read> points: array<Point>;

@@ -1,4 +1,5 @@
 // candidates: the candidate of each slot, that of the slot to which its triangle belongs. One invocation per slot.
+// Twin: `number` in crates/reference/src/triangle_homes.rs
 
 @group(0) @binding(2) var<storage, read> numbers: array<u32>;
 /// The slot to which each slot's triangle belongs, or NONE; becomes the candidate of each slot, or NONE.

@@ -1,5 +1,5 @@
 // candidates: numbers the triangles in the order of the slots to which they belong, and notes their corners.
-// Twin: `number` in crates/reference/src/candidates.rs
+// Twin: `number` in crates/reference/src/triangle_homes.rs
 // One invocation per point.
 
 @group(0) @binding(2) var<storage, read> fans: array<Fan>;

@@ -1,5 +1,6 @@
 // The Euclidean neighbourhood N^E of a point without the pairs that eq. 6 rejects (sections 3 and 4).
-// Twins: `find_balls` and `judge` in crates/reference/src/neighborhood.rs, `project` in crates/reference/src/ball.rs
+// Twins: `find_balls` in crates/reference/src/neighborhood.rs, `judge` (eq. 6) in crates/reference/src/pairs.rs and `project`
+// (eq. 9) in crates/reference/src/ball.rs
 //
 // Expects what neighborhood.wgsl declares.
 

@@ -1,4 +1,4 @@
-// The corners of a fan's triangle. Twin: `canonical` in crates/reference/src/candidates.rs
+// The corners of a fan's triangle. Twin: `canonical` in crates/reference/src/fan_triangle.rs
 
 /// Smallest index first, orientation kept.
 fn canonical(p: u32, a: u32, b: u32) -> vec3<u32> {

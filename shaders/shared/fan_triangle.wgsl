@@ -1,4 +1,4 @@
-// The triangles of a fan. Twin: `fan_triangle` in crates/reference/src/candidates.rs
+// The triangles of a fan. Twin: crates/reference/src/fan_triangle.rs
 //
 // Expects what curves.wgsl has.
 

@@ -1,7 +1,6 @@
-// Fuzzy planes (section 4.1, eq. 8). Twins: `worst_sines` and `badness` in crates/reference/src/ball.rs
+// Fuzzy planes (section 4.1, eq. 8). Twin: crates/reference/src/fuzzy_planes.rs
 //
-// Expects `accurate`, `is_left_out` MOST, and rows X, Y and HEIGHT of the members, as neighborhood.wgsl has
-// them.
+// Expects `accurate`, `is_left_out`, MOST, and rows X, Y and HEIGHT of the members, as neighborhood.wgsl has them.
 
 /// Largest badness of a neighbour: 1, and a margin because regular grids give exactly that.
 const WORST_BADNESS: f32 = 1.001;

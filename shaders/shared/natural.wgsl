@@ -1,5 +1,5 @@
 // Takes natural neighbours back that were removed, in gaps of the ring that are wide open (ours).
-// Twins: `is_in_open_gap` and `is_natural` in crates/reference/src/neighborhood.rs
+// Twin: crates/reference/src/natural.rs
 //
 // Expects what neighborhood.wgsl declares.
 

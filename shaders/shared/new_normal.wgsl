@@ -1,4 +1,4 @@
-// Normals of new points, and triangles that have none. Twins in crates/reference/src/pn_triangle.rs
+// Normals of new points, and triangles that have none. Twin: crates/reference/src/new_normal.rs
 //
 // Expects what pn_triangle.wgsl has.
 

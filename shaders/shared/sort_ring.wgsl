@@ -1,4 +1,4 @@
-// The members of a ring in the order of their angles. Twin: `Around` in crates/reference/src/ball.rs
+// The members of a ring in the order of their angles. Twin: crates/reference/src/sort_ring.rs
 //
 // Expects rows ID, ANGLE and ORDER of the members, and `is_kept`, as neighborhood.wgsl has them.
 

@@ -1,5 +1,5 @@
 //! What may happen around each point: the candidates that it may meet, and the conflict graph `T` of the points that must not
-//! be refined at the same time. Twins: `shaders/conflicts*.wgsl`.
+//! be refined at the same time. Twins: `shaders/conflicts*.wgsl` and `shaders/shared/around.wgsl`.
 //!
 //! The insertion around a point (section 5) depends on those before it. Two points commute unless
 //! a candidate of one lies within `λ1 r` of the other, so that it would enter its N', or

@@ -1,4 +1,4 @@
-//! Radii that cover the next level's rings (ours). Twin: `shaders/next_ring.wgsl`.
+//! Radii that cover the next level's rings (ours). Twins: `shaders/next_ring.wgsl` and `shaders/shared/ahead.wgsl`.
 //!
 //! The paper's new radius covers the new neighbours N' alone. On irregular samples the ring of a point at the next level
 //! also has old points in it, and triangles that N' does not know. So the ring is looked up ahead: the members of the
