@@ -52,6 +52,11 @@ pub(crate) fn is_software(info: &AdapterInfo) -> bool {
     info.device_type == DeviceType::Cpu
 }
 
+/// Whether a device of that kind has its buffers in the memory of the host.
+pub(crate) fn shares_memory(kind: DeviceType) -> bool {
+    matches!(kind, DeviceType::Cpu | DeviceType::IntegratedGpu)
+}
+
 fn entries(adapters: &[wgpu::Adapter], chosen: &AdapterInfo) -> Vec<Entry> {
     // Equal adapters can't be told apart: the first of them is the chosen one.
     let position = adapters.iter().position(|a| a.get_info() == *chosen);

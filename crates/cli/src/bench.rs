@@ -71,7 +71,7 @@ impl<'a> Bench<'a> {
         let is_limited = !args.sizes().1;
         let cpu = has_cpu.then(|| Forecast::of_cpu(is_limited));
         let gpu = device.map(|device| {
-            let forecast = Forecast::of_gpu(is_limited, device.is_software);
+            let forecast = Forecast::of_gpu(is_limited, device.is_on_host);
             (device, forecast)
         });
         let notes = note.into_iter().collect();

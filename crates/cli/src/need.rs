@@ -1,16 +1,18 @@
 //! The memory that a refinement will need, and whether there is that much.
 
+use crate::adapters::shares_memory;
 use crate::watch::Watch;
 use crate::{Failure, memory};
-use surfine::{Error, Forecast, PointSet, RefineParams, Refiner, points_by_level, wgpu};
+use surfine::wgpu::DeviceType;
+use surfine::{Error, Forecast, PointSet, RefineParams, Refiner, points_by_level};
 use surfine_points::Values;
 
-/// Memory of the CPU backend for each point of the result: 210 to 320 bytes were measured.
-const CPU_BYTES: u64 = 280;
+/// Memory of the CPU backend for each point of the result: 160 to 300 bytes were measured.
+pub(crate) const CPU_BYTES: u64 = 280;
 /// What it surely takes for each point of the input, once that is read: copies in spatial order, a grid, rings.
 const LEAST_CPU_BYTES: u64 = 100;
-/// Memory on the host for each point that is read back from a GPU.
-const READ_BACK_BYTES: u64 = 200;
+/// Memory on the host for each point that is read back from a GPU: 130 bytes were measured.
+pub(crate) const READ_BACK_BYTES: u64 = 200;
 /// Memory of a software driver and its compiled kernels.
 const DRIVER_BYTES: u64 = 150_000_000;
 
@@ -57,10 +59,10 @@ impl Need {
         let forecast = refiner.forecast(points, params)?;
         let sizes = forecast.points_by_level.clone();
         let gpu = refiner.gpu();
-        let on_host = gpu.device.adapter_info().device_type == wgpu::DeviceType::Cpu;
+        let kind = gpu.device.adapter_info().device_type;
+        let on_host = shares_memory(kind);
         let read_back = end(&sizes).saturating_mul(READ_BACK_BYTES + 2 * attribute_bytes(points));
-        let buffers = if on_host { forecast.device_bytes.saturating_add(DRIVER_BYTES) } else { 0 };
-        let host = read_back.saturating_add(buffers);
+        let host = read_back.saturating_add(beside(kind, forecast.device_bytes));
         let (adapter, largest_allowed) = (gpu.name.clone(), gpu.largest_buffer());
         let device = Some(DeviceNeed { adapter, forecast, largest_allowed, on_host });
         Ok(Self { points_by_level: sizes, host, least_host: 0, device })
@@ -109,7 +111,8 @@ impl DeviceNeed {
         let (need, have) = (bytes(need), bytes(self.largest_allowed));
         let adapter = &self.adapter;
         Fits::Unlikely(format!(
-            "its buffer of {name} would take about {need}, {adapter} allows {have} in one buffer: {remedy}, or use the CPU"
+            "its buffer of {name} would take about {need}, {adapter} allows {have} in one buffer: \
+             {remedy}, or use the CPU"
         ))
     }
 }
@@ -121,6 +124,13 @@ impl Fits {
             watch.warn(&format!("this will probably fail: {why}"));
         }
     }
+}
+
+/// Bytes on the host for a device of that kind and its buffers, beside what is read back.
+fn beside(kind: DeviceType, device_bytes: u64) -> u64 {
+    let buffers = if shares_memory(kind) { device_bytes } else { 0 };
+    let driver = if kind == DeviceType::Cpu { DRIVER_BYTES } else { 0 };
+    buffers.saturating_add(driver)
 }
 
 /// Points at the end.
@@ -171,6 +181,20 @@ mod tests {
         assert!(why.contains("2.5 MB of memory, 1.0 MB are available"), "{why}");
         let Failure(why) = need.fits_into(Some(99_999)).unwrap_err();
         assert!(why.contains("100.0 kB of memory at least, 100.0 kB are available"), "{why}");
+    }
+
+    #[test]
+    fn devices_without_memory_of_their_own_take_that_of_the_host() {
+        let pairs = [
+            (DeviceType::Cpu, 1000 + DRIVER_BYTES),
+            (DeviceType::IntegratedGpu, 1000),
+            (DeviceType::DiscreteGpu, 0),
+            (DeviceType::VirtualGpu, 0),
+            (DeviceType::Other, 0),
+        ];
+        for (kind, bytes) in pairs {
+            assert_eq!(beside(kind, 1000), bytes, "{kind:?}");
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The adapter that is measured.
 
 use super::report::Gpu;
-use crate::adapters::{Description, is_software};
+use crate::adapters::{Description, shares_memory};
 use crate::args::{BenchArgs, BenchBackend};
 use crate::backend::is_preferred;
 use std::fmt::Display;
@@ -11,7 +11,8 @@ use surfine::{Error, Refiner, choose_adapter, wgpu};
 /// An open adapter.
 pub(super) struct Device {
     pub(super) refiner: Refiner,
-    pub(super) is_software: bool,
+    /// Whether its buffers are in the memory of the host.
+    pub(super) is_on_host: bool,
     pub(super) report: Gpu,
 }
 
@@ -57,8 +58,8 @@ impl Device {
         let begin = Instant::now();
         let refiner = Refiner::with_gpu(surfine::Gpu::open(adapter)?)?;
         let setup_seconds = begin.elapsed().as_secs_f64();
-        let is_software = is_software(&adapter.get_info());
+        let is_on_host = shares_memory(adapter.get_info().device_type);
         let report = Gpu { adapter: Description::new(adapter), setup_seconds };
-        Ok(Self { refiner, is_software, report })
+        Ok(Self { refiner, is_on_host, report })
     }
 }

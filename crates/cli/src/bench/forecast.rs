@@ -2,16 +2,14 @@
 
 use super::measure::Measured;
 use crate::memory;
+use crate::need::{CPU_BYTES, READ_BACK_BYTES};
 use std::time::Duration;
 
 /// Time for each backend, where the user did not choose the sizes.
 const MOST_TIME: Duration = Duration::from_secs(60);
 
-/// Memory that the CPU backend takes for each point of the result: 260 bytes were measured.
-const CPU_BYTES: f64 = 400.0;
-
-/// Memory on the host for each point of a result of the GPU: what is read back, and the CPU's result beside it.
-const RESULT_BYTES: f64 = 200.0;
+/// Memory of a device for each point of the result, until it is measured.
+const DEVICE_BYTES: f64 = 200.0;
 
 /// This share of the available memory may be taken.
 const SHARE: f64 = 0.8;
@@ -37,14 +35,21 @@ impl Forecast {
             device_on_host: false,
             spent: Duration::ZERO,
             seconds_per_point: None,
-            bytes_per_point: CPU_BYTES,
+            bytes_per_point: CPU_BYTES as f64,
             failed: None,
         }
     }
 
-    pub(super) fn of_gpu(is_limited: bool, is_software: bool) -> Self {
-        let bytes_per_point = RESULT_BYTES;
-        Self { device_on_host: is_software, bytes_per_point, ..Self::of_cpu(is_limited) }
+    pub(super) fn of_gpu(is_limited: bool, device_on_host: bool) -> Self {
+        let mut forecast = Self { device_on_host, ..Self::of_cpu(is_limited) };
+        forecast.set_device_bytes(DEVICE_BYTES);
+        forecast
+    }
+
+    /// Learns what the device takes for each point. What is read back counts in any case; the CPU's result beside it is small.
+    fn set_device_bytes(&mut self, bytes: f64) {
+        let on_host = if self.device_on_host { bytes } else { 0.0 };
+        self.bytes_per_point = READ_BACK_BYTES as f64 + on_host;
     }
 
     /// Why a result of that size is not tried.
@@ -73,8 +78,8 @@ impl Forecast {
         let time = measured.time();
         self.spent += time;
         self.seconds_per_point = Some(time.as_secs_f64() / points);
-        if let Some(bytes) = measured.refined.device_bytes.filter(|_| self.device_on_host) {
-            self.bytes_per_point = RESULT_BYTES + bytes as f64 / points;
+        if let Some(bytes) = measured.refined.device_bytes {
+            self.set_device_bytes(bytes as f64 / points);
         }
     }
 
@@ -102,6 +107,8 @@ mod tests {
         if memory::available().is_some() {
             assert!(large.objection(100_000).unwrap().contains("100000000.0 GB of memory"));
         }
+        let per_point = |on_host| Forecast::of_gpu(true, on_host).bytes_per_point;
+        assert_eq!(per_point(true) - per_point(false), DEVICE_BYTES);
         let mut failed = Forecast::of_gpu(true, true);
         failed.fail("a smaller one failed".into());
         assert!(failed.objection(100).is_some());
