@@ -79,7 +79,7 @@ pub(crate) struct Params {
     boundary_angle_degrees: Option<f64>,
     /// The property that marks the boundary.
     boundary_property: Option<String>,
-    /// Rules beyond the paper that were followed.
+    /// Rules beyond the paper that were in effect: others may be on, but mean nothing with these parameters.
     rules: Vec<&'static str>,
 }
 
@@ -185,7 +185,13 @@ impl Params {
                 Boundary::None | Boundary::Marked(_) => None,
             },
             boundary_property: params.boundary.property().map(str::to_owned),
-            rules: params.rules.named().into_iter().filter(|r| r.1).map(|r| r.0).collect(),
+            rules: params
+                .rules_in_effect()
+                .named()
+                .into_iter()
+                .filter(|r| r.1)
+                .map(|r| r.0)
+                .collect(),
         }
     }
 }

@@ -95,7 +95,7 @@ pub struct Rules {
     /// `natural_neighbors`.
     pub sure_neighbors: bool,
     /// Between points on a step, whose normals both lean the same way along their edge, a normal is interpolated without a
-    /// bend.
+    /// bend. It needs `sliver_normals`.
     pub step_normals: bool,
     /// New points are selected among the candidates of the whole cloud, the largest triangles first, instead of around one point
     /// after the other. `theta_c` and `plain_angle` mean nothing then, and `lambda1` is the share of the distance to the farthest
@@ -292,8 +292,53 @@ impl RefineParams {
         }
     }
 
+    /// The rules that change anything with these parameters: [`RefineParams::effective_rules`] without those that need a rule
+    /// that is off, or that mean nothing to the selection. For people; kernels are compiled for the former.
+    pub fn rules_in_effect(&self) -> Rules {
+        let rules = self.effective_rules();
+        let by_gaps = !rules.largest_first;
+        Rules {
+            sure_neighbors: rules.sure_neighbors && rules.natural_neighbors,
+            step_normals: rules.step_normals && rules.sliver_normals,
+            first_radii: rules.first_radii && by_gaps,
+            curve_bounds: rules.curve_bounds && by_gaps,
+            ..rules
+        }
+    }
+
     /// Whether radii cover the next level's rings.
     pub fn effective_next_ring(&self) -> bool {
         self.effective_rules().next_ring
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Names of the rules that change nothing although they are on.
+    fn idle(params: &RefineParams) -> Vec<&'static str> {
+        let pairs = params.rules.named().into_iter().zip(params.rules_in_effect().named());
+        pairs.filter(|(on, in_effect)| on.1 != in_effect.1).map(|(on, _)| on.0).collect()
+    }
+
+    #[test]
+    fn rules_in_effect_are_those_that_mean_something() {
+        let usual = RefineParams::default();
+        assert_eq!(idle(&usual), ["first_radii", "curve_bounds"]);
+        let simplified = RefineParams { simplified: true, ..usual.clone() };
+        let irregular = ["natural_neighbors", "sure_neighbors"];
+        let rest = ["next_ring", "curve_bounds"];
+        assert_eq!(idle(&simplified), [&["first_radii"], &irregular[..], &rest[..]].concat());
+        let without = |name| {
+            let mut rules = Rules { largest_first: false, ..Rules::ALL };
+            *rules.get_mut(name).unwrap() = false;
+            idle(&RefineParams { rules, ..usual.clone() })
+        };
+        assert!(without("largest_first").is_empty());
+        assert_eq!(without("natural_neighbors"), ["sure_neighbors"]);
+        assert_eq!(without("sliver_normals"), ["step_normals"]);
+        let literal = RefineParams { rules: Rules::LITERAL, ..usual };
+        assert_eq!(literal.rules_in_effect(), Rules::LITERAL);
     }
 }

@@ -207,9 +207,33 @@ fn options_reach_the_refinement() {
     let report = folder.refine_json(&["--simplified"]);
     assert_eq!(report["params"]["neighborhood"], "fuzzy");
     assert_eq!(report["params"]["simplified"], true);
-    assert_eq!(report["params"]["rules"].as_array().unwrap().len(), 15);
-    let report = folder.refine_json(&["--without", "own_side", "--without", "next_ring"]);
-    assert_eq!(report["params"]["rules"].as_array().unwrap().len(), 13);
+}
+
+#[test]
+fn rules_in_effect_are_reported() {
+    let folder = Folder::with_sample("torus", "50");
+    let rules = |more: &[&str]| {
+        let report = folder.refine_json(more);
+        let rules = report["params"]["rules"].as_array().unwrap().clone();
+        rules.iter().map(|rule| rule.as_str().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    let usual = rules(&[]);
+    let without = |names: &[&str]| {
+        let mut rest = usual.clone();
+        rest.retain(|rule| !names.contains(&rule.as_str()));
+        rest
+    };
+    // The selection among all candidates has no use for radii, nor for gaps.
+    assert!(usual.len() == 13 && without(&["first_radii", "curve_bounds"]) == usual, "{usual:?}");
+    let irregular = ["natural_neighbors", "sure_neighbors", "next_ring"];
+    assert_eq!(rules(&["--simplified"]), without(&irregular));
+    let two = ["--without", "own_side", "--without", "next_ring"];
+    assert_eq!(rules(&two), without(&["own_side", "next_ring"]));
+    assert_eq!(rules(&["--without", "natural_neighbors"]), without(&irregular[..2]));
+    let by_gaps = rules(&["--without", "largest_first"]);
+    assert!(by_gaps.len() == 14 && by_gaps.contains(&"first_radii".into()), "{by_gaps:?}");
+    assert_eq!(rules(&["--plain-angle"]), by_gaps);
+    assert!(rules(&["--literal"]).is_empty());
 }
 
 #[test]
