@@ -33,10 +33,12 @@ pub(super) struct Measured {
 }
 
 impl Measured {
-    /// Of all runs, if that before them took no longer: it may have compiled kernels, which larger clouds won't.
+    /// Of all runs, those in slices too, if that before them took no longer: it may have compiled kernels, which larger
+    /// clouds won't.
     pub(super) fn time(&self) -> Duration {
-        let runs = self.runs.iter().chain(self.read_back.iter().flatten());
-        median(&self.runs).time + runs.map(|run| run.time).sum::<Duration>()
+        let runs = self.runs.iter().chain(self.read_back.iter().flatten()).map(|run| run.time);
+        let sliced = self.sliced.iter().map(Sliced::time);
+        median(&self.runs).time + runs.chain(sliced).sum::<Duration>()
     }
 }
 
@@ -103,14 +105,36 @@ fn run(begin: Instant, reports: &[LevelReport]) -> Run {
     Run { time, stages }
 }
 
-/// The last commands may still run when a result that stays on the device is there.
+/// The last commands may still run when a result that stays on the device is there. The engine waits for a buffer: it knows
+/// what to do about a lost device.
 pub(super) fn wait(gpu: &Gpu) -> Result<(), Error> {
-    let failed =
-        |e: wgpu::PollError| Error::Device { adapter: gpu.name.clone(), message: e.to_string() };
-    gpu.device.poll(wgpu::PollType::wait_indefinitely()).map(|_| ()).map_err(failed)
+    let (size, usage) = (wgpu::COPY_BUFFER_ALIGNMENT, wgpu::BufferUsages::MAP_READ);
+    let buffer = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
+    gpu.guarded(|| gpu.map(&gpu.device.create_buffer(&buffer)).map(|_| ()))
 }
 
 /// Milliseconds.
 pub(super) fn ms(time: Duration) -> f64 {
     1e3 * time.as_secs_f64()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn time_is_that_of_all_runs() {
+        let run = |ms| Run { time: Duration::from_millis(ms), stages: Vec::new() };
+        let sliced =
+            |ms| Sliced::new(Duration::from_millis(4), vec![[Duration::from_millis(ms); 2]]);
+        let measured = Measured {
+            refined: Refined::default(),
+            runs: vec![run(1), run(2), run(30)],
+            read_back: Some(vec![run(400)]),
+            sliced: vec![sliced(5000), sliced(60_000)],
+        };
+        let ms = |ms| Duration::from_millis(ms);
+        assert_eq!(median(&measured.runs).time, ms(2));
+        assert_eq!(measured.time(), ms(2 + 33 + 400 + 65_000));
+    }
 }

@@ -21,8 +21,8 @@ pub(super) struct Sliced {
     whole_ms: f64,
 }
 
-/// Refines the cloud twice in slices: how long kernels take is not known before the first run, but before the second. The refiner
-/// comes back in any case.
+/// Refines the cloud twice in slices: how long kernels take is not known before the first run, but before the second. The
+/// refiner comes back in any case.
 pub(super) fn in_slices(
     mut refiner: Refiner,
     plan: &Plan<'_>,
@@ -59,7 +59,12 @@ fn drive(run: &mut Slices, gpu: &Gpu, budget: Duration) -> Result<Vec<[Duration;
 }
 
 impl Sliced {
-    fn new(budget: Duration, times: Vec<[Duration; 2]>) -> Self {
+    /// Of the whole run.
+    pub(super) fn time(&self) -> Duration {
+        Duration::from_secs_f64(self.whole_ms / 1e3)
+    }
+
+    pub(super) fn new(budget: Duration, times: Vec<[Duration; 2]>) -> Self {
         let longest_call_ms = times.iter().map(|t| ms(t[0])).fold(0.0, f64::max);
         let mut slices: Vec<f64> = times.iter().map(|t| ms(t[1])).collect();
         slices.sort_by(f64::total_cmp);
