@@ -39,7 +39,7 @@ struct List {
 pub(crate) fn run(args: &AdaptersArgs) -> Result<(), Failure> {
     let chosen = choose_adapter(None)?.get_info();
     let list = List {
-        auto_backend: if is_software(&chosen) { "cpu" } else { "gpu" },
+        auto_backend: if is_preferred(&chosen) { "gpu" } else { "cpu" },
         adapters: entries(&adapters(), &chosen),
     };
     if args.json {
@@ -50,6 +50,16 @@ pub(crate) fn run(args: &AdaptersArgs) -> Result<(), Failure> {
 
 pub(crate) fn is_software(info: &AdapterInfo) -> bool {
     info.device_type == DeviceType::Cpu
+}
+
+/// Whether an adapter is taken where the user leaves the choice: a hardware one, or one that `WGPU_ADAPTER_NAME` names.
+pub(crate) fn is_preferred(info: &AdapterInfo) -> bool {
+    is_named() || !is_software(info)
+}
+
+/// Whether `WGPU_ADAPTER_NAME` names an adapter.
+pub(crate) fn is_named() -> bool {
+    std::env::var("WGPU_ADAPTER_NAME").is_ok_and(|name| !name.is_empty())
 }
 
 /// Whether a device of that kind has its buffers in the memory of the host.

@@ -1,11 +1,13 @@
 //! The command line.
 
 mod bench;
+mod common;
 mod evaluate;
 mod holes;
 mod render;
 
 pub(crate) use bench::{BenchArgs, BenchBackend};
+use common::{SummaryArgs, ThreadArgs};
 pub(crate) use evaluate::EvaluateArgs;
 pub(crate) use holes::{FillArgs, FillChoice, HolesArgs};
 pub(crate) use render::{ColorChoice, RenderArgs};
@@ -166,15 +168,10 @@ pub(crate) struct RefineArgs {
     /// that fits; it fails if it surely does not. The time comes from a sphere that is refined for a moment
     #[arg(long)]
     pub(crate) dry_run: bool,
-    /// Number of threads of the CPU backend, 1 to 1024 [default: all cores, or `RAYON_NUM_THREADS`]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(crate) threads: Option<u16>,
-    /// Print neither progress nor summary; warnings and errors stay
-    #[arg(short, long)]
-    pub(crate) quiet: bool,
-    /// Print the summary as one JSON object, and no progress
-    #[arg(long)]
-    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
+    #[command(flatten)]
+    pub(crate) summary: SummaryArgs,
 }
 
 #[derive(Debug, Args)]
@@ -307,7 +304,7 @@ impl RefineArgs {
 
     /// Whether the levels are measured: not where nothing would show it.
     pub(crate) fn shows_stats(&self) -> bool {
-        self.stats && (self.json || !self.quiet)
+        self.stats && self.summary.shows_summary()
     }
 
     /// The parameters; each was checked when it was parsed.

@@ -10,9 +10,9 @@ mod slices;
 mod table;
 
 use crate::args::{BenchArgs, BenchBackend};
-use crate::report::Params;
+use crate::summary::Params;
 use crate::watch::Watch;
-use crate::{Failure, backend, print, print_json};
+use crate::{Failure, print, print_json};
 use clouds::Cloud;
 use device::{Choice, Device};
 use forecast::Forecast;
@@ -21,7 +21,7 @@ use report::{Case, Cpu, LeftOut, Report};
 use surfine::{Error, RefineParams};
 
 pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
-    backend::start_threads(args.threads)?;
+    args.threads.start()?;
     let report = {
         let watch = Watch::new(args.quiet || args.json);
         Bench::open(args, &watch)?.report()?

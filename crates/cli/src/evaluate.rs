@@ -4,8 +4,9 @@ use crate::args::EvaluateArgs;
 use crate::paint::heat;
 use crate::painter::Painter;
 use crate::scene::axes;
+use crate::summary::name;
 use crate::watch::Watch;
-use crate::{Failure, backend, cloud, files, print, print_json};
+use crate::{Failure, cloud, files, print, print_json};
 use serde::Serialize;
 use std::path::Path;
 use surfine_evaluate::{Evaluation, Options, Truth, TruthKind, errors, evaluate};
@@ -17,7 +18,7 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<(), Failure> {
         let inputs = [Some(&args.output), Some(&args.truth), args.input.as_ref()];
         files::check_picture(path, inputs.into_iter().flatten())?;
     }
-    backend::start_threads(args.threads)?;
+    args.threads.start()?;
     let watch = Watch::new(args.quiet || args.json);
     // A picture that can't be drawn is refused before the measures are taken.
     let heatmap = args.heatmap.as_deref().map(|path| Heatmap::new(args, path, &watch));
@@ -90,7 +91,6 @@ struct Report<'a> {
 
 impl<'a> Report<'a> {
     fn new(args: &EvaluateArgs, evaluation: &'a Evaluation) -> Self {
-        let name = |path: &Path| path.display().to_string();
         Self {
             output: name(&args.output),
             truth: name(&args.truth),

@@ -39,6 +39,15 @@ pub(crate) fn check_output(output: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Refuses a cloud that could not be written at the end, or would take the place of the input.
+pub(crate) fn check_cloud(output: &Path, input: &Path) -> Result<(), Failure> {
+    if ply::same_file(input, output) {
+        let output = output.display();
+        return Err(Failure(format!("{output}: is the input too: give the output another name")));
+    }
+    check_output(output)
+}
+
 /// Refuses a picture that could not be written at the end, or would take the place of an input.
 pub(crate) fn check_picture<'a>(
     output: &Path,

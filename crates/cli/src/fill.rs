@@ -1,35 +1,27 @@
 //! `surfine fill`, and the filling before a refinement.
 
 use crate::args::{FillArgs, FillChoice};
+use crate::summary::name;
 use crate::watch::Watch;
-use crate::{Failure, backend, files, print, print_json};
+use crate::{Failure, files};
 use serde::Serialize;
+use std::fmt::{self, Display, Formatter};
 use std::path::Path;
 use surfine_holes::{Fill, Filled, fill_holes};
 use surfine_points::PointSet;
 use surfine_points::ply::{self, Source};
 
 pub(crate) fn run(args: &FillArgs) -> Result<(), Failure> {
-    if ply::same_file(&args.input, &args.output) {
-        let output = args.output.display();
-        return Err(Failure(format!("{output}: is the input too: give the output another name")));
-    }
-    files::check_output(&args.output)?;
-    backend::start_threads(args.threads)?;
-    let watch = Watch::new(args.quiet || args.json);
+    files::check_cloud(&args.output, &args.input)?;
+    args.threads.start()?;
+    let watch = args.summary.watch();
     watch.step(format!("reading {}", args.input.display()));
     let (points, source) = ply::read(&args.input)?;
     let filled = filled(&args.input, &points, &args.fill_holes, &watch)?;
     watch.step(format!("writing {}", args.output.display()));
     ply::write(&args.output, &filled.points, None, &source, files::encoding(args.ascii))?;
-    let report = Report::new(args, &points, &source, &filled);
-    if args.json {
-        print_json(&report)
-    } else if args.quiet {
-        Ok(())
-    } else {
-        watch.suspend(|| print(&report.text()))
-    }
+    drop(watch);
+    args.summary.print(&Report::new(args, &points, &source, &filled))
 }
 
 /// Fills the chosen holes of an input.
@@ -82,7 +74,6 @@ impl Hole {
 
 impl Report {
     fn new(args: &FillArgs, points: &PointSet, source: &Source, filled: &Filled) -> Self {
-        let name = |path: &Path| path.display().to_string();
         let mut notes = source.notes.clone();
         notes.extend(fill_notes(&args.fill_holes, filled));
         Self {
@@ -94,14 +85,15 @@ impl Report {
             notes,
         }
     }
+}
 
-    fn text(&self) -> String {
+impl Display for Report {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let Self { input, output, points_in, points_out, holes, notes } = self;
-        let mut text = format!("input    {input}: {points_in} points\n");
-        text += &format!("output   {output}: {points_out} points\n");
-        text += &summary(holes);
-        notes.iter().for_each(|note| text += &format!("note     {note}\n"));
-        text
+        writeln!(f, "input    {input}: {points_in} points")?;
+        writeln!(f, "output   {output}: {points_out} points")?;
+        f.write_str(&summary(holes))?;
+        notes.iter().try_for_each(|note| writeln!(f, "note     {note}"))
     }
 }
 

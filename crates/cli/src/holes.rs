@@ -1,17 +1,18 @@
 //! `surfine holes`.
 
 use crate::args::HolesArgs;
-use crate::{Failure, backend, print, print_json};
+use crate::summary::name;
+use crate::{Failure, print, print_json};
 use serde::Serialize;
 use std::fmt::Write;
 use surfine_holes::{Loop, loops};
 use surfine_points::ply;
 
 pub(crate) fn run(args: &HolesArgs) -> Result<(), Failure> {
-    backend::start_threads(args.threads)?;
+    args.threads.start()?;
     let (points, _) = ply::read(&args.input)?;
     let loops: Vec<Row> = loops(&points).iter().map(Row::new).collect();
-    let input = args.input.display().to_string();
+    let input = name(&args.input);
     if args.json {
         let report = Report { input, points: points.len(), loops };
         return print_json(&report);

@@ -2,10 +2,8 @@
 
 mod adapters;
 mod args;
-mod backend;
 mod bench;
 mod cloud;
-mod dry_run;
 mod evaluate;
 mod files;
 mod fill;
@@ -16,10 +14,9 @@ mod paint;
 mod painter;
 mod refine;
 mod render;
-mod report;
 mod sample;
 mod scene;
-mod stats;
+mod summary;
 mod watch;
 
 use args::{Cli, Command};

@@ -76,7 +76,8 @@ impl Paint {
     }
 }
 
-/// The colour of each distance in each list from 0 to `max`, or else to the largest; farther ones like that. And the scale.
+/// The colour of each distance in each list from 0 to `max`, or else to the largest; farther ones like that. And the
+/// scale.
 pub(crate) fn heat(errors: &[Vec<f64>], max: Option<f32>) -> (Vec<Vec<[u8; 3]>>, Scale) {
     let largest = errors.iter().flatten().copied().fold(0.0, f64::max);
     let high = max.map_or(largest, f64::from);

@@ -1,8 +1,9 @@
 //! Who draws pictures.
 
+use crate::Failure;
+use crate::adapters::is_preferred;
 use crate::args::BackendChoice;
 use crate::watch::Watch;
-use crate::{Failure, backend};
 use surfine::{Gpu, choose_adapter};
 use surfine_render::{Camera, DeviceSplats, Error, Picture, Renderer, Size, Splats, Style, cpu};
 
@@ -40,7 +41,7 @@ impl Painter {
             BackendChoice::Cpu => Ok(Self::Cpu),
             BackendChoice::Gpu => open(choose_adapter(adapter)?, false),
             BackendChoice::Auto => match choose_adapter(None) {
-                Ok(adapter) if backend::is_preferred(&adapter) => {
+                Ok(adapter) if is_preferred(&adapter.get_info()) => {
                     open(adapter, true).or_else(|Failure(reason)| {
                         warn(watch, &reason);
                         Ok(Self::Cpu)

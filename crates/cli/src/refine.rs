@@ -1,47 +1,28 @@
 //! `surfine refine`.
 
+mod backend;
+mod dry_run;
+mod report;
+mod stats;
+
 use crate::args::RefineArgs;
-use crate::backend::{self, Computed};
-use crate::report::{Input, Report, Times};
 use crate::watch::Watch;
-use crate::{Failure, dry_run, files, fill, print, print_json};
-use serde::Serialize;
-use std::fmt::Display;
+use crate::{Failure, files, fill};
+use backend::Computed;
+use report::{Input, Report, Times};
 use std::time::{Duration, Instant};
 use surfine_points::ply::{self, PlyError, Provenance, Source};
 use surfine_points::{Convergence, Interpolation, PointSet, Values};
 
 pub(crate) fn run(args: &RefineArgs) -> Result<(), Failure> {
-    check_paths(args)?;
-    backend::start_threads(args.threads)?;
+    // Everything that can be refused before the input is read.
+    files::check_cloud(&args.output, &args.input)?;
+    args.threads.start()?;
     if args.dry_run {
         return dry_run::run(args);
     }
-    let report = refine(args, &Watch::new(args.quiet || args.json))?;
-    print_report(args, &report)
-}
-
-/// Prints what is told of a refinement, as far as the user wants to know.
-pub(crate) fn print_report(
-    args: &RefineArgs,
-    report: &(impl Serialize + Display),
-) -> Result<(), Failure> {
-    if args.json {
-        print_json(report)
-    } else if args.quiet {
-        Ok(())
-    } else {
-        print(&report.to_string())
-    }
-}
-
-/// Everything that can be refused before the input is read.
-fn check_paths(args: &RefineArgs) -> Result<(), Failure> {
-    if ply::same_file(&args.input, &args.output) {
-        let output = args.output.display();
-        return Err(Failure(format!("{output}: is the input too: give the output another name")));
-    }
-    files::check_output(&args.output)
+    let report = refine(args, &args.summary.watch())?;
+    args.summary.print(&report)
 }
 
 fn refine(args: &RefineArgs, watch: &Watch) -> Result<Report, Failure> {
@@ -68,7 +49,7 @@ fn refine(args: &RefineArgs, watch: &Watch) -> Result<Report, Failure> {
 }
 
 /// Reads the input and refuses what does not fit the arguments.
-pub(crate) fn read(args: &RefineArgs, watch: &Watch) -> Result<(PointSet, Source), Failure> {
+fn read(args: &RefineArgs, watch: &Watch) -> Result<(PointSet, Source), Failure> {
     watch.step(format!("reading {}", args.input.display()));
     let (mut points, source) = ply::read(&args.input)?;
     set_attribute_rules(args, &mut points)?;

@@ -5,7 +5,7 @@ use crate::cloud::Cloud;
 use crate::painter::Painter;
 use crate::scene::Scene;
 use crate::watch::Watch;
-use crate::{Failure, backend, files, print};
+use crate::{Failure, files, print};
 use std::path::PathBuf;
 use std::time::Instant;
 use surfine_render::{Animation, Size};
@@ -14,7 +14,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     args.check();
     let output = Output::new(args)?;
     check_captions(args)?;
-    backend::start_threads(args.threads)?;
+    args.threads.start()?;
     let watch = Watch::new(args.quiet);
     let begin = Instant::now();
     let mut painter = Painter::new(args.backend, args.adapter.as_deref(), &watch)?;

@@ -1,6 +1,6 @@
 //! The arguments of `surfine bench`.
 
-use super::VariantArgs;
+use super::{ThreadArgs, VariantArgs};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -57,9 +57,8 @@ pub(crate) struct BenchArgs {
     /// The surface is closed: look for no boundary
     #[arg(long)]
     closed: bool,
-    /// Number of threads of the CPU backend, 1 to 1024 [default: all cores, or `RAYON_NUM_THREADS`]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(crate) threads: Option<u16>,
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
     /// Print neither progress nor warnings; the tables and errors stay
     #[arg(short, long)]
     pub(crate) quiet: bool,

@@ -1,7 +1,7 @@
 //! The arguments of `surfine evaluate`.
 
-use super::BackendChoice;
 use super::render::{above_zero, size, view};
+use super::{BackendChoice, ThreadArgs};
 use clap::Args;
 use std::path::PathBuf;
 use surfine_render::{Size, View};
@@ -56,9 +56,8 @@ pub(crate) struct EvaluateArgs {
     /// Where to draw the heatmap
     #[arg(long, value_enum, value_name = "WHERE", default_value_t, requires = "heatmap")]
     pub(crate) backend: BackendChoice,
-    /// Number of threads, 1 to 1024 [default: all cores, or `RAYON_NUM_THREADS`]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(crate) threads: Option<u16>,
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
     /// Print neither progress nor why measures could not be taken; warnings and errors stay
     #[arg(short, long)]
     pub(crate) quiet: bool,

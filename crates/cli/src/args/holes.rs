@@ -1,5 +1,6 @@
 //! Options of `holes` and `fill`.
 
+use super::{SummaryArgs, ThreadArgs};
 use clap::Args;
 use std::path::PathBuf;
 pub(crate) use surfine_holes::Choice as FillChoice;
@@ -32,9 +33,8 @@ pub(crate) struct HolesArgs {
     /// PLY file of points: x y z, nx ny nz (unit length, outward), radius
     #[arg(value_name = "IN")]
     pub(crate) input: PathBuf,
-    /// Number of threads, 1 to 1024 [default: all cores, or `RAYON_NUM_THREADS`]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(crate) threads: Option<u16>,
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
     /// Print one JSON object
     #[arg(long)]
     pub(crate) json: bool,
@@ -56,15 +56,10 @@ pub(crate) struct FillArgs {
     /// Write decimal text instead of little-endian binary
     #[arg(long)]
     pub(crate) ascii: bool,
-    /// Number of threads, 1 to 1024 [default: all cores, or `RAYON_NUM_THREADS`]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(crate) threads: Option<u16>,
-    /// Print neither progress nor summary; warnings and errors stay
-    #[arg(short, long)]
-    pub(crate) quiet: bool,
-    /// Print the summary as one JSON object, and no progress
-    #[arg(long)]
-    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
+    #[command(flatten)]
+    pub(crate) summary: SummaryArgs,
 }
 
 /// `all`, `none`, `raised`, `1,3` or `max-span=0.2`.

@@ -1,6 +1,6 @@
 //! The arguments of `surfine render`.
 
-use super::{BackendChoice, Cli, number};
+use super::{BackendChoice, Cli, ThreadArgs, number};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, ValueEnum};
@@ -100,9 +100,8 @@ pub(crate) struct RenderArgs {
     /// GPU adapter whose name or driver contains NAME, in any case; implies --backend gpu
     #[arg(long, value_name = "NAME")]
     pub(crate) adapter: Option<String>,
-    /// Number of threads of the CPU, 1 to 1024 [default: all cores, or `RAYON_NUM_THREADS`]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(crate) threads: Option<u16>,
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
     /// Print neither progress nor summary; warnings and errors stay
     #[arg(short, long)]
     pub(crate) quiet: bool,

@@ -2,7 +2,7 @@
 
 use crate::Failure;
 use crate::args::BenchArgs;
-use crate::report::name;
+use crate::summary::name;
 use crate::watch::Watch;
 use std::path::Path;
 use surfine::{PointSet, RefineParams};

@@ -1,9 +1,8 @@
 //! The adapter that is measured.
 
 use super::report::Gpu;
-use crate::adapters::{Description, shares_memory};
+use crate::adapters::{Description, is_preferred, shares_memory};
 use crate::args::{BenchArgs, BenchBackend};
-use crate::backend::is_preferred;
 use std::fmt::Display;
 use std::time::Instant;
 use surfine::{Error, Refiner, choose_adapter, wgpu};
@@ -34,7 +33,7 @@ pub(super) fn open(args: &BenchArgs) -> Result<Choice, Error> {
         BenchBackend::Both if args.adapter.is_some() => Ok(Choice::of(opened()?)),
         BenchBackend::Both => Ok(opened().map_or_else(|e| Choice::none(&e), Choice::of)),
         BenchBackend::Auto => Ok(match choose() {
-            Ok(adapter) if !is_preferred(&adapter) => {
+            Ok(adapter) if !is_preferred(&adapter.get_info()) => {
                 let name = adapter.get_info().name;
                 Choice::none(&format_args!("the GPU adapter {name} is a software one"))
             }

@@ -46,7 +46,8 @@ impl Forecast {
         forecast
     }
 
-    /// Learns what the device takes for each point. What is read back counts in any case; the CPU's result beside it is small.
+    /// Learns what the device takes for each point. What is read back counts in any case; the CPU's result beside it is
+    /// small.
     fn set_device_bytes(&mut self, bytes: f64) {
         let on_host = if self.device_on_host { bytes } else { 0.0 };
         self.bytes_per_point = READ_BACK_BYTES as f64 + on_host;

@@ -105,8 +105,8 @@ fn run(begin: Instant, reports: &[LevelReport]) -> Run {
     Run { time, stages }
 }
 
-/// The last commands may still run when a result that stays on the device is there. The engine waits for a buffer: it knows
-/// what to do about a lost device.
+/// The last commands may still run when a result that stays on the device is there. The engine waits for a buffer: it
+/// knows what to do about a lost device.
 pub(super) fn wait(gpu: &Gpu) -> Result<(), Error> {
     let (size, usage) = (wgpu::COPY_BUFFER_ALIGNMENT, wgpu::BufferUsages::MAP_READ);
     let buffer = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };

@@ -4,7 +4,7 @@ use super::clouds::Cloud;
 use super::measure::{Measured, Run, median, ms};
 use super::slices::Sliced;
 use crate::adapters::Description;
-use crate::report::{Params, in_order, per_second};
+use crate::summary::{Params, in_order, per_second};
 use serde::Serialize;
 
 /// Everything that was measured. Its names are the keys of the JSON object.

@@ -21,8 +21,8 @@ pub(super) struct Sliced {
     whole_ms: f64,
 }
 
-/// Refines the cloud twice in slices: how long kernels take is not known before the first run, but before the second. The
-/// refiner comes back in any case.
+/// Refines the cloud twice in slices: how long kernels take is not known before the first run, but before the second.
+/// The refiner comes back in any case.
 pub(super) fn in_slices(
     mut refiner: Refiner,
     plan: &Plan<'_>,

@@ -2,7 +2,7 @@
 
 use super::report::{Case, LeftOut, Pace, Report, Side, Spread};
 use super::short;
-use crate::report::counted;
+use crate::summary::counted;
 use std::fmt::{self, Display, Formatter};
 
 const LEGEND: &str = "\

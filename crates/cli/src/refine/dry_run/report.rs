@@ -4,7 +4,7 @@ use super::pace::Pace;
 use crate::args::RefineArgs;
 use crate::memory;
 use crate::need::{DeviceNeed, Fits, Need, bytes};
-use crate::report::{counted, name};
+use crate::summary::{counted, name};
 use serde::Serialize;
 use std::fmt::{self, Display, Formatter};
 
@@ -148,7 +148,8 @@ impl Display for Report {
         let Sphere { points, seconds } = self.pace;
         writeln!(
             f,
-            "time     about {}, at the pace of a sphere refined to {points} points in {seconds:.3} s with the same parameters",
+            "time     about {}, at the pace of a sphere refined to {points} points in {seconds:.3} s \
+             with the same parameters",
             duration(self.seconds)
         )?;
         writeln!(f, "output   {}: about {}", self.output, bytes(self.output_bytes))?;

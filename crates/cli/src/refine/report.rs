@@ -1,40 +1,40 @@
 //! The summary of a refinement, for people and as JSON.
 
+use super::backend::{Backend, Computed};
+use super::stats::Stats;
 use crate::args::RefineArgs;
-use crate::backend::{Backend, Computed};
 use crate::fill::{Hole, fill_notes, summary};
-use crate::stats::Stats;
-use serde::{Serialize, Serializer};
+use crate::summary::{Params, counted, in_order, name, per_second};
+use serde::Serialize;
 use std::fmt::{self, Display, Formatter};
-use std::path::Path;
 use std::time::Duration;
-use surfine::{Boundary, CurveCounts, LevelReport, Mode, Neighborhood, PointSet, RefineParams};
+use surfine::{CurveCounts, LevelReport, Mode, PointSet};
 use surfine_holes::Filled;
 use surfine_points::Convergence;
 use surfine_points::ply::Source;
 
 /// How long the steps took.
-pub(crate) struct Times {
-    pub(crate) read: Duration,
-    pub(crate) fill: Duration,
-    pub(crate) setup: Duration,
-    pub(crate) refine: Duration,
-    pub(crate) write: Duration,
+pub(super) struct Times {
+    pub(super) read: Duration,
+    pub(super) fill: Duration,
+    pub(super) setup: Duration,
+    pub(super) refine: Duration,
+    pub(super) write: Duration,
     /// Measuring the levels, where that was asked for.
-    pub(crate) stats: Duration,
+    pub(super) stats: Duration,
 }
 
 /// The cloud that was read, and what was filled.
 #[derive(Clone, Copy)]
-pub(crate) struct Input<'a> {
-    pub(crate) points: &'a PointSet,
-    pub(crate) filled: &'a Filled,
-    pub(crate) source: &'a Source,
+pub(super) struct Input<'a> {
+    pub(super) points: &'a PointSet,
+    pub(super) filled: &'a Filled,
+    pub(super) source: &'a Source,
 }
 
 /// The summary. Its names are the keys of the JSON object.
 #[derive(Serialize)]
-pub(crate) struct Report {
+pub(super) struct Report {
     input: String,
     output: String,
     points_in: usize,
@@ -61,26 +61,6 @@ pub(crate) struct Report {
     /// New points for each second of refinement, without setup and files.
     points_per_second: f64,
     notes: Vec<String>,
-}
-
-#[derive(Serialize)]
-pub(crate) struct Params {
-    levels: u32,
-    /// The one that was used: `accurate` or `fuzzy`.
-    neighborhood: &'static str,
-    simplified: bool,
-    /// Whether angles between new neighbours were straight.
-    plain_angle: bool,
-    theta_f_degrees: f64,
-    theta_c_degrees: f64,
-    lambda1: f32,
-    lambda2: f32,
-    /// `θ_b`, where boundaries are found by it.
-    boundary_angle_degrees: Option<f64>,
-    /// The property that marks the boundary.
-    boundary_property: Option<String>,
-    /// Rules beyond the paper that were in effect: others may be on, but mean nothing with these parameters.
-    rules: Vec<&'static str>,
 }
 
 /// Creases and boundaries of the input.
@@ -121,7 +101,7 @@ struct Seconds {
 }
 
 impl Report {
-    pub(crate) fn new(
+    pub(super) fn new(
         args: &RefineArgs,
         read: Input<'_>,
         computed: &Computed,
@@ -152,60 +132,6 @@ impl Report {
             stats: convergence.as_deref().map(Stats::new),
             notes: notes(args, read, computed, mode),
         }
-    }
-}
-
-pub(crate) fn name(path: &Path) -> String {
-    path.display().to_string()
-}
-
-pub(crate) fn per_second(count: usize, time: Duration) -> f64 {
-    // A refinement of nothing may take no time that the clock shows.
-    count as f64 / time.as_secs_f64().max(1e-9)
-}
-
-impl Params {
-    pub(crate) fn new(params: &RefineParams) -> Self {
-        // The fourth decimal is the last that 32-bit radians keep.
-        let degrees = |angle: f32| (f64::from(angle).to_degrees() * 1e4).round() / 1e4;
-        Self {
-            levels: params.levels,
-            neighborhood: match params.effective_neighborhood() {
-                Neighborhood::Accurate => "accurate",
-                Neighborhood::Fuzzy => "fuzzy",
-            },
-            simplified: params.simplified,
-            plain_angle: params.effective_plain_angle(),
-            theta_f_degrees: degrees(params.theta_f),
-            theta_c_degrees: degrees(params.theta_c),
-            lambda1: params.lambda1,
-            lambda2: params.lambda2,
-            boundary_angle_degrees: match params.boundary {
-                Boundary::Angle(theta_b) => Some(degrees(theta_b)),
-                Boundary::None | Boundary::Marked(_) => None,
-            },
-            boundary_property: params.boundary.property().map(str::to_owned),
-            rules: params
-                .rules_in_effect()
-                .named()
-                .into_iter()
-                .filter(|r| r.1)
-                .map(|r| r.0)
-                .collect(),
-        }
-    }
-}
-
-impl Display for Params {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let levels = counted(self.levels as usize, "level", "levels");
-        let simplified = if self.simplified { "simplified, " } else { "" };
-        let rules = counted(self.rules.len(), "rule", "rules");
-        write!(
-            f,
-            "{levels}, {simplified}{} neighborhoods, {rules} beyond the paper",
-            self.neighborhood
-        )
     }
 }
 
@@ -302,18 +228,6 @@ fn notes(args: &RefineArgs, read: Input<'_>, computed: &Computed, mode: Mode) ->
         notes.push("mode plain: results can differ from the CPU backend's in rounding".into());
     }
     notes
-}
-
-pub(crate) fn counted(count: usize, one: &str, many: &str) -> String {
-    format!("{count} {}", if count == 1 { one } else { many })
-}
-
-/// A JSON object that keeps the order of its keys.
-pub(crate) fn in_order<S: Serializer>(
-    entries: &[(&'static str, f64)],
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(entries.iter().copied())
 }
 
 impl Display for Report {

@@ -7,7 +7,7 @@ use surfine_points::Convergence;
 /// One entry a level, the input first. Names are the keys of the JSON objects.
 #[derive(Serialize)]
 #[serde(transparent)]
-pub(crate) struct Stats(Vec<Level>);
+pub(super) struct Stats(Vec<Level>);
 
 #[derive(Serialize)]
 struct Level {
@@ -29,7 +29,7 @@ struct Spread {
 }
 
 impl Stats {
-    pub(crate) fn new(levels: &[Convergence]) -> Self {
+    pub(super) fn new(levels: &[Convergence]) -> Self {
         let Some(input) = levels.first().map(|l| l.radius) else { return Self(Vec::new()) };
         // A cloud without points has no radius to compare with.
         let ratio = |a: f64, b: f64| if b > 0.0 { a / b } else { 1.0 };

@@ -3,23 +3,23 @@
 mod pace;
 mod report;
 
+use super::backend::{Choice, fallback_after};
 use crate::args::RefineArgs;
-use crate::backend::{Choice, fallback_after};
 use crate::need::Need;
 use crate::watch::Watch;
-use crate::{Failure, files, fill, refine};
+use crate::{Failure, files, fill};
 use pace::Pace;
 use report::{Estimate, Report};
 use surfine::{Error, Gpu, PointSet, RefineParams, Refiner, wgpu};
 use surfine_points::ply;
 
-pub(crate) fn run(args: &RefineArgs) -> Result<(), Failure> {
-    let report = report(args, &Watch::new(args.quiet || args.json))?;
-    refine::print_report(args, &report)
+pub(super) fn run(args: &RefineArgs) -> Result<(), Failure> {
+    let report = report(args, &args.summary.watch())?;
+    args.summary.print(&report)
 }
 
 fn report(args: &RefineArgs, watch: &Watch) -> Result<Report, Failure> {
-    let (points, source) = refine::read(args, watch)?;
+    let (points, source) = super::read(args, watch)?;
     // It takes as long as it will, but far less than the refinement, and may refuse.
     let filled = fill::filled(&args.input, &points, &args.fill_holes(), watch)?;
     let Plan { need, pace, fallback } = plan(args, &filled.points, watch)?;

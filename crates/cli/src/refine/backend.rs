@@ -1,7 +1,7 @@
 //! Where the refinement is computed.
 
 use crate::Failure;
-use crate::adapters::is_software;
+use crate::adapters::{is_named, is_software};
 use crate::args::{BackendChoice, RefineArgs};
 use crate::need::Need;
 use crate::watch::Watch;
@@ -10,15 +10,15 @@ use surfine::{Error, Gpu, Mode, PointSet, RefineParams, Refined, Refiner, choose
 use surfine_reference::insertion::Order;
 
 /// A refined cloud and how it came about.
-pub(crate) struct Computed {
-    pub(crate) refined: Refined,
-    pub(crate) backend: Backend,
+pub(super) struct Computed {
+    pub(super) refined: Refined,
+    pub(super) backend: Backend,
     /// Choosing an adapter, opening it and building the kernels.
-    pub(crate) setup: Duration,
+    pub(super) setup: Duration,
     /// The refinement, with the way of the points to the device and back.
-    pub(crate) refine: Duration,
+    pub(super) refine: Duration,
     /// Why the CPU was taken although a GPU might have been.
-    pub(crate) fallback: Option<String>,
+    pub(super) fallback: Option<String>,
 }
 
 impl Computed {
@@ -29,7 +29,7 @@ impl Computed {
 }
 
 /// What a refinement was computed with.
-pub(crate) enum Backend {
+pub(super) enum Backend {
     Gpu {
         adapter: String,
         mode: Mode,
@@ -41,15 +41,8 @@ pub(crate) enum Backend {
     },
 }
 
-/// Gives the CPU backend its threads; without a wish, those of `RAYON_NUM_THREADS` or one a core.
-pub(crate) fn start_threads(wanted: Option<u16>) -> Result<(), Failure> {
-    let builder = rayon::ThreadPoolBuilder::new().num_threads(wanted.unwrap_or(0).into());
-    let failed = |e| Failure(format!("threads cannot be started: {e}: ask for fewer (--threads)"));
-    builder.build_global().map_err(failed)
-}
-
 /// Where a refinement is to be computed.
-pub(crate) enum Choice {
+pub(super) enum Choice {
     Cpu {
         /// Why, although a GPU might have been taken.
         fallback: Option<String>,
@@ -62,14 +55,14 @@ pub(crate) enum Choice {
 }
 
 impl Choice {
-    /// What the arguments ask for. Without a wish it is a hardware GPU if there is one, else the CPU; an adapter that `WGPU_ADAPTER_NAME`
-    /// asks for is taken whatever it is.
-    pub(crate) fn of(args: &RefineArgs) -> Result<Self, Error> {
+    /// What the arguments ask for. Without a wish it is a hardware GPU if there is one, else the CPU; an adapter that
+    /// `WGPU_ADAPTER_NAME` asks for is taken whatever it is.
+    pub(super) fn of(args: &RefineArgs) -> Result<Self, Error> {
         let wanted = args.adapter.as_deref();
         match args.backend() {
             BackendChoice::Cpu => Ok(Self::Cpu { fallback: None }),
             BackendChoice::Gpu => Ok(Self::Gpu { adapter: choose_adapter(wanted)?, or_cpu: false }),
-            BackendChoice::Auto if names_adapter() => {
+            BackendChoice::Auto if is_named() => {
                 Ok(Self::Gpu { adapter: choose_adapter(None)?, or_cpu: false })
             }
             BackendChoice::Auto => Ok(match choose_adapter(None) {
@@ -91,7 +84,7 @@ impl Choice {
 }
 
 /// Why the CPU is taken after a GPU has failed, unless the CPU would refuse the same.
-pub(crate) fn fallback_after(error: Error) -> Result<String, Error> {
+pub(super) fn fallback_after(error: Error) -> Result<String, Error> {
     match error {
         Error::Points(_) | Error::Params(_) => Err(error),
         _ => Ok(format!("using the CPU: the GPU failed: {error}")),
@@ -99,7 +92,7 @@ pub(crate) fn fallback_after(error: Error) -> Result<String, Error> {
 }
 
 /// Refines with the backend that the arguments ask for.
-pub(crate) fn compute(
+pub(super) fn compute(
     args: &RefineArgs,
     points: &PointSet,
     watch: &Watch,
@@ -152,13 +145,4 @@ fn on_gpu(
     let refined = refiner.refine_with(points, params, &mut |at| watch.at(at))?;
     let backend = Backend::Gpu { adapter, mode, software };
     Ok(Computed::new(refined, backend, begin))
-}
-
-/// Whether an adapter is taken where the user leaves the choice: a hardware one, or one that `WGPU_ADAPTER_NAME` names.
-pub(crate) fn is_preferred(adapter: &wgpu::Adapter) -> bool {
-    names_adapter() || !is_software(&adapter.get_info())
-}
-
-fn names_adapter() -> bool {
-    std::env::var("WGPU_ADAPTER_NAME").is_ok_and(|name| !name.is_empty())
 }
