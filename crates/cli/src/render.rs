@@ -11,7 +11,6 @@ use std::time::Instant;
 use surfine_render::{Animation, Size};
 
 pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
-    args.check();
     let output = Output::new(args)?;
     check_captions(args)?;
     args.threads.start()?;

@@ -1,6 +1,7 @@
 //! The arguments of `surfine bench`.
 
-use super::{ThreadArgs, VariantArgs};
+use super::variant::VariantArgs;
+use super::{ADAPTER_ON_CPU, ThreadArgs};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -20,19 +21,19 @@ Examples:
 The clouds are blue noise on a sphere; those above 50000 points are made by refining smaller ones, since
 blue noise of millions takes minutes. Each backend refines each cloud once without being measured (kernels
 are compiled, buffers grow), then --runs times; the time is that of the median run. Row `gpu`: the result
-stays on the device; row `gpu, read back`: it returns to the host. Both include the way of the input to
-the device. A size is left out, and this is said, if it would take more memory than there is (Linux only)
-or, without --sizes, if its backend would then take more than a minute in all. Both backends must give the
-same bytes on a software adapter in mode exact: if they do not, the command fails.";
+stays on the device; row `gpu, read back`: it is copied to the host. Both begin with the copy of the input
+to the device. A size is left out, and this is said, if it would take more memory than there is (Linux
+only) or, without --sizes, if the backend would then have taken more than a minute in all. Both backends
+must give the same bytes on a software adapter in mode exact: if they do not, the command fails.";
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct BenchArgs {
-    /// Numbers of points to end with, about: each 100 to 100M, with k for thousands and M for millions [default:
-    /// 10k,100k,1M,10M as far as time and memory go]
+    /// Numbers of points that the spheres have when they are refined, about; each 100 to 100M, where k stands for
+    /// thousands and M for millions [default: 10k,100k,1M,10M, as many of them as time and memory allow]
     #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = size)]
     sizes: Option<Vec<usize>>,
-    /// PLY file of points to measure with, instead of spheres: as for `refine`; no holes are filled
+    /// PLY file of points to refine instead of spheres, as for `surfine refine`; no holes are filled
     #[arg(long, value_name = "FILE", conflicts_with = "sizes")]
     pub(crate) input: Option<PathBuf>,
     /// Number of refinement steps, 1 to 20; each multiplies the points by about 3
@@ -41,7 +42,7 @@ pub(crate) struct BenchArgs {
     levels: u32,
     /// What to measure
     #[arg(long, value_enum, value_name = "WHERE", default_value_t)]
-    pub(crate) backend: BenchBackend,
+    backend: BenchBackend,
     /// GPU adapter whose name or driver contains NAME, in any case
     #[arg(long, value_name = "NAME")]
     pub(crate) adapter: Option<String>,
@@ -49,11 +50,10 @@ pub(crate) struct BenchArgs {
     #[arg(long, value_name = "N", default_value = "3")]
     #[arg(value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub(crate) runs: u16,
-    /// Also refine on the GPU in slices of MS milliseconds, 0.1 to 1000, and tell what these take
+    /// Also refine on the GPU in slices, as beside an application's frames, and tell how long they take: each is meant
+    /// to take MS milliseconds, 0.1 to 1000
     #[arg(long, value_name = "MS", value_parser = budget)]
     pub(crate) slice: Option<Duration>,
-    #[command(flatten)]
-    variant: VariantArgs,
     /// The surface is closed: look for no boundary
     #[arg(long)]
     closed: bool,
@@ -65,23 +65,31 @@ pub(crate) struct BenchArgs {
     /// Print the tables as one JSON object, and no progress
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    variant: VariantArgs,
 }
 
 /// What is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(crate) enum BenchBackend {
-    /// The CPU and a GPU adapter, software ones too
+    /// The CPU and, if there is one, a GPU adapter, hardware before software ones
     #[default]
     Both,
     /// What `refine` would take: a hardware GPU if there is one, else the CPU
     Auto,
-    /// Any GPU adapter, software ones too
+    /// A GPU adapter, hardware before software ones; fails rather than fall back to the CPU
     Gpu,
     /// The CPU
     Cpu,
 }
 
 impl BenchArgs {
+    /// Options that do not go together.
+    pub(super) fn problem(&self) -> Option<&'static str> {
+        let is_cpu = self.backend == BenchBackend::Cpu;
+        (is_cpu && self.adapter.is_some()).then_some(ADAPTER_ON_CPU)
+    }
+
     /// What is measured, with what `--adapter` implies.
     pub(crate) fn backend(&self) -> BenchBackend {
         match self.backend {
@@ -101,14 +109,8 @@ impl BenchArgs {
     /// The parameters of each run.
     pub(crate) fn params(&self) -> RefineParams {
         let usual = RefineParams::default();
-        RefineParams {
-            levels: self.levels,
-            neighborhood: self.variant.neighborhood.into(),
-            simplified: self.variant.simplified,
-            boundary: if self.closed { Boundary::None } else { usual.boundary },
-            rules: self.variant.rules(),
-            ..usual
-        }
+        let boundary = if self.closed { Boundary::None } else { usual.boundary.clone() };
+        self.variant.applied_to(RefineParams { levels: self.levels, boundary, ..usual })
     }
 }
 

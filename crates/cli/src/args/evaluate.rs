@@ -24,10 +24,11 @@ pub(crate) struct EvaluateArgs {
     /// PLY file of the true surface: a mesh, or dense points, best with nx ny nz
     #[arg(long, value_name = "FILE")]
     pub(crate) truth: PathBuf,
-    /// PLY file that OUT was refined from: are its points still there, bit for bit?
+    /// PLY file that OUT was refined from, to check that its points are still there, bit for bit
     #[arg(long, value_name = "FILE")]
     pub(crate) input: Option<PathBuf>,
-    /// Points sampled on a mesh to find holes [default: 2 for each point of OUT, 100000 to 1000000]
+    /// Number of points to sample on a mesh, 1 to 100000000, to find the places that OUT leaves bare [default: 2 for
+    /// each point of OUT, within 100000 and 1000000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
     pub(crate) samples: Option<u32>,
     /// Seed of the samples, 0 to 2^64 - 1
@@ -58,7 +59,7 @@ pub(crate) struct EvaluateArgs {
     pub(crate) backend: BackendChoice,
     #[command(flatten)]
     pub(crate) threads: ThreadArgs,
-    /// Print neither progress nor why measures could not be taken; warnings and errors stay
+    /// Print neither progress nor why measures are missing; warnings and errors stay
     #[arg(short, long)]
     pub(crate) quiet: bool,
     /// Print the measures as one JSON object, and no progress

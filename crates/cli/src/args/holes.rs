@@ -10,10 +10,15 @@ Examples:
   surfine holes scan.ply
   surfine holes scan.ply --json | jq '.loops[] | select(.kind == \"hole\")'
 
-A loop is a closed chain of points around a place without points. Ids go from 1, the widest first. Span: largest
-distance of two of its points. Turning: about 360 degrees around a hole in a plane, less in a round surface, -360 along
-the outline of a flat piece. Kind: hole from 90 to 540 degrees, outer rim below -90, else undecided: the end of a
-tube, half of a sphere, a tangle.";
+A loop is a closed chain of points around a place without points. Lengths are in the units of IN, and in
+spacings: the mean distance of the loop's points to their neighbors.
+  id         1 for the widest loop, and so on; `fill` takes it
+  span       largest distance between two points of the loop
+  perimeter  length of the loop
+  turning    sum of its bends in degrees: about 360 around a hole in a plane, less around one in a round
+             surface, -360 along the outline of a flat piece
+  kind       hole if it turns by 90 to 540 degrees, outer rim below -90, else undecided: the end of a tube, half
+             of a sphere, a tangle";
 
 const FILL_EXAMPLES: &str = "\
 Examples:
@@ -22,10 +27,10 @@ Examples:
   surfine fill scan.ply -o filled.ply --fill-holes max-span=0.2
   surfine fill scan.ply -o filled.ply && surfine refine filled.ply -o fine.ply
 
-The points of IN come first in FILE, in their order and unchanged but for radii along the loops; the new points
-follow loop by loop, as dense as those around the loop. The property hole has the id of the loop for new points, else 0.
-Radii that were raised by hand to close holes (more than 4 times the median and 2.5 times the natural radius) become
-natural where anything is filled.";
+The points of IN come first in FILE, in their order and unchanged but for radii along the loops; the new
+points follow loop by loop, as dense as those around the loop. They have the id of their loop in the
+property hole, all others 0. Radii that were raised by hand to close holes (to more than 4 times the
+median and 2.5 times the natural radius) are replaced by natural ones if a hole is filled there.";
 
 #[derive(Debug, Args)]
 #[command(after_help = HOLES_EXAMPLES)]
@@ -49,8 +54,9 @@ pub(crate) struct FillArgs {
     /// PLY file to write, not IN; it appears whole or not at all
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
-    /// Which loops: all (holes, no outer rims), raised (those with radii raised by hand to close them), ids as `surfine
-    /// holes` lists them, or max-span=X (in the units of IN, no outer rims)
+    /// Which loops to fill: all (holes, no outer rims), raised (those around which radii were raised by hand, to close
+    /// them), none, ids as `surfine holes` lists them, or max-span=X (no wider than X in the units of IN, no outer
+    /// rims)
     #[arg(long, value_name = "WHICH", default_value = "all", value_parser = choice)]
     pub(crate) fill_holes: FillChoice,
     /// Write decimal text instead of little-endian binary

@@ -1,9 +1,8 @@
 //! The arguments of `surfine render`.
 
-use super::{BackendChoice, Cli, ThreadArgs, number};
+use super::{ADAPTER_ON_CPU, BackendChoice, ThreadArgs, number};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::error::ErrorKind;
-use clap::{Args, CommandFactory, ValueEnum};
+use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use surfine_points::DVec3;
 use surfine_render::{Size, View};
@@ -16,10 +15,11 @@ Examples:
   surfine render fine.ply -o turn.png --turntable 36          one animated PNG
   surfine render fine.ply -o turn-##.png --turntable 36       turn-00.png to turn-35.png
 
-Several inputs are drawn side by side by the same camera. A mesh shows its vertices. Points without a
-normal are dots; missing radii are made up from the neighbors. The back of a disc is orange: normals
-should look at you. At sharp edges of coarse meshes a little orange is no error: one normal a vertex
-can't look both ways. Axes: x to the right, y up, z towards the viewer of `--view front`; see --z-up.";
+Several inputs are drawn side by side by the same camera. Each point is a disc (splat), colors blend where
+discs overlap. Of a mesh the vertices are drawn. Points without a normal are dots; missing radii are made
+up from the neighbors. The back of a disc is orange: where you see it, normals point the wrong way. At
+sharp edges of coarse meshes a little orange is no error: one normal for a vertex can't fit both sides.
+Axes: x to the right, y up, z towards the viewer of `--view front`; see --z-up.";
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -27,7 +27,8 @@ pub(crate) struct RenderArgs {
     /// PLY files of points or meshes: x y z, best with nx ny nz and radius
     #[arg(value_name = "IN", required = true)]
     pub(crate) inputs: Vec<PathBuf>,
-    /// PNG file to write; it appears whole or not at all. With --turntable, a row of # stands for the number of the frame
+    /// PNG file to write; it appears whole or not at all. With --turntable, a row of # in its name gives each frame a
+    /// file: the number takes its place
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
     /// Width and height of each input's picture, pixels
@@ -39,7 +40,7 @@ pub(crate) struct RenderArgs {
     /// The z axis is up, as in terrain and CAD: the front is then the side of -y
     #[arg(long, conflicts_with_all = ["eye", "up"])]
     pub(crate) z_up: bool,
-    /// Place of the camera, in the units of IN; without --fit exactly there
+    /// Place of the camera, in the units of IN
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, conflicts_with = "view")]
     #[arg(allow_hyphen_values = true)]
     pub(crate) eye: Option<DVec3>,
@@ -51,7 +52,7 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "X,Y,Z", value_parser = direction)]
     #[arg(allow_hyphen_values = true)]
     pub(crate) up: Option<DVec3>,
-    /// Move the camera along its line of sight, towards --target, until everything is seen; so it is without --eye
+    /// Move the camera along its line of sight until everything is just seen, as is always done without --eye
     #[arg(long)]
     pub(crate) fit: bool,
     /// What colors show
@@ -60,7 +61,8 @@ pub(crate) struct RenderArgs {
     /// The true surface, for --color error alone: PLY file of a mesh or of dense points
     #[arg(long, value_name = "FILE")]
     pub(crate) truth: Option<PathBuf>,
-    /// Value at the bright end of the scale of radius, level or error, which then begins at 0 [default: the largest]
+    /// Value at the bright end of the color scale for radius, level and error; the other end is then 0 [default: the
+    /// largest value]
     #[arg(long, value_name = "X", value_parser = above_zero)]
     pub(crate) max: Option<f32>,
     /// Draw raw points instead of splats
@@ -70,7 +72,7 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "X", default_value = "1.5", value_parser = size_factor)]
     #[arg(requires = "points")]
     pub(crate) point_size: f32,
-    /// Factor of the size of the splats, 0.001 to 1000
+    /// Draw splats so many times as large, 0.001 to 1000
     #[arg(long, value_name = "X", default_value = "1", value_parser = size_factor)]
     #[arg(conflicts_with = "points")]
     pub(crate) splat_scale: f32,
@@ -87,10 +89,10 @@ pub(crate) struct RenderArgs {
     /// Leave out text and color scale
     #[arg(long, conflicts_with = "caption")]
     pub(crate) no_captions: bool,
-    /// Turn the cloud around in N frames, about --up, or the y axis (z with --z-up) without it
+    /// Draw N frames, 2 to 3600, of a whole turn of the cloud about the direction of --up [default: y, with --z-up z]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=3600))]
     pub(crate) turntable: Option<u32>,
-    /// Frames a second of an animated PNG
+    /// Frames a second of an animated PNG, 1 to 100
     #[arg(long, value_name = "N", default_value = "15", requires = "turntable")]
     #[arg(value_parser = clap::value_parser!(u16).range(1..=100))]
     pub(crate) fps: u16,
@@ -108,17 +110,8 @@ pub(crate) struct RenderArgs {
 }
 
 impl RenderArgs {
-    /// Ends the program with wrong usage if an option is given that would do nothing.
-    pub(crate) fn check(&self) {
-        let Some(text) = self.idle_option() else { return };
-        let mut root = Cli::command();
-        // The usage line of the error is then that of `render`.
-        root.build();
-        let render = root.find_subcommand_mut("render").expect("it was just parsed");
-        render.error(ErrorKind::ArgumentConflict, text).exit();
-    }
-
-    fn idle_option(&self) -> Option<&'static str> {
+    /// An option that would do nothing.
+    pub(super) fn problem(&self) -> Option<&'static str> {
         let has_scale =
             matches!(self.color, ColorChoice::Radius | ColorChoice::Level | ColorChoice::Error);
         if self.truth.is_some() && self.color != ColorChoice::Error {
@@ -126,7 +119,7 @@ impl RenderArgs {
         } else if self.max.is_some() && !has_scale {
             Some("the argument '--max <X>' needs '--color radius', 'level' or 'error'")
         } else if self.adapter.is_some() && self.backend == BackendChoice::Cpu {
-            Some("the argument '--adapter <NAME>' cannot be used with '--backend cpu'")
+            Some(ADAPTER_ON_CPU)
         } else {
             None
         }

@@ -658,3 +658,19 @@ fn gpu_gives_the_bytes_of_the_cpu() {
         assert!(folder.bytes("gpu.ply") == folder.bytes("out.ply"), "{count} points differ");
     }
 }
+
+/// Needs an adapter, whose name is then given; a software one will do.
+#[test]
+fn adapter_that_the_environment_names_is_taken() {
+    let folder = Folder::with_sample("sphere", "100");
+    let json = |args: &[&str], name: &str| {
+        let output = folder.command(args).env("WGPU_ADAPTER_NAME", name).output().unwrap();
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        serde_json::from_slice::<Value>(&output.stdout).unwrap()
+    };
+    let list = json(&["adapters", "--json"], "");
+    let name = list["adapters"][0]["name"].as_str().unwrap();
+    assert_eq!(json(&["adapters", "--json"], name)["auto_backend"], "gpu");
+    let report = json(&["refine", "in.ply", "-o", "out.ply", "--json"], name);
+    assert_eq!((&report["backend"], &report["adapter"]), (&"gpu".into(), &name.into()));
+}
