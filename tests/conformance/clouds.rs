@@ -67,6 +67,21 @@ pub(crate) fn shared_outlined() -> Vec<Cloud> {
     files.into_iter().filter_map(shared).collect()
 }
 
+/// Small clouds, one or the other of which needs each rule.
+pub(crate) fn demanding() -> [Cloud; 3] {
+    let [mut spheres, other] =
+        [4, 5].map(|seed| sample(Shape::Sphere, Sampling::Random, 150, seed));
+    // They all but touch: sheets that face each other at all distances.
+    spheres.positions.extend(other.positions.iter().map(|x| *x + Vec3::new(2.05, 0.0, 0.0)));
+    spheres.normals.extend(&other.normals);
+    spheres.radii.extend(&other.radii);
+    let saddle = sample_outlined(Outlined::SaddleRim, Sampling::BlueNoise, 160, 3);
+    // So coarse that neighbours are not surely on one side of a crease.
+    let cylinder = sample_outlined(Outlined::Cylinder, Sampling::Random, 40, 17);
+    [("near spheres", spheres), ("saddle with rim", saddle), ("coarse cylinder", cylinder)]
+        .map(|(name, points)| Cloud::new(name, points))
+}
+
 /// Clouds for whole runs, with the number of levels.
 pub(crate) fn whole() -> Vec<(Cloud, u32)> {
     let mut clouds = vec![
@@ -107,9 +122,12 @@ pub(crate) fn variants() -> [RefineParams; 6] {
 pub(crate) fn describe(params: &RefineParams) -> String {
     let RefineParams { neighborhood, simplified, rules, .. } = params;
     let rules = match *rules {
-        Rules::ALL => "all rules",
-        Rules::LITERAL => "literal",
-        _ => "without largest_first",
+        Rules::ALL => "all rules".into(),
+        Rules::LITERAL => "literal".into(),
+        some => {
+            let off = some.named().into_iter().filter(|(_, on)| !on).map(|(name, _)| name);
+            format!("without {}", off.collect::<Vec<_>>().join(", "))
+        }
     };
     format!("{neighborhood:?}, simplified {simplified}, {rules}")
 }
