@@ -23,7 +23,7 @@ pub(crate) fn scramble(id: u32) -> u32 {
 }
 
 /// Ranges of priorities, one after the other: few points of one range are neighbours.
-const RANGES: usize = 32;
+pub const RANGES: usize = 32;
 
 /// Gives every point, in the order of priority, the lowest class that none of its neighbours `before` it chose.
 ///

@@ -23,7 +23,7 @@ use std::ops::Range;
 use surfine_points::{Grid, RefineParams};
 
 /// Widens what lists must hold, so that rounding can't lose an entry.
-const SLACK: f32 = 1.0 + 1e-5;
+pub const SLACK: f32 = 1.0 + 1e-5;
 
 /// What may happen around each point.
 #[derive(Clone, Debug, Default, PartialEq)]
