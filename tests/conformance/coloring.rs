@@ -3,9 +3,7 @@
 use crate::conflicts::ConflictBuffers;
 use crate::harness::{Device, GUARD_WORD, Step, compare_equal, device, must, steps_with};
 use surfine::testing::Buffer;
-
-/// Ranges of priorities, as the kernels have them.
-const RANGES: usize = 32;
+use surfine_reference::coloring::RANGES;
 
 /// The points by range of priorities, with the first of each range before them.
 fn by_priority(device: &mut Device, step: &Step) -> Buffer {

@@ -2,11 +2,12 @@
 
 use crate::clouds::{describe, small, small_outlined, variants};
 use crate::tolerance::{EXACT, Tolerance};
+use naga::{Expression, Literal};
 use std::collections::HashMap;
 use std::sync::{LazyLock, Mutex, MutexGuard, OnceLock};
 use surfine::curves::{Curves, Table, table};
 use surfine::records::{ARENA_BLOCK, Candidate, Counters, Fan, LEVEL_BITS, Params, Point};
-use surfine::shaders::SHADERS;
+use surfine::shaders::{SHADERS, Shader};
 use surfine::testing::{Buffer, Commands, Uniforms, constants, read};
 use surfine::{Boundary, Gpu, Kernel, Mode, RefineParams, Refiner, Vec3};
 use surfine_features::{Features, Records};
@@ -112,8 +113,7 @@ impl Device {
         let key = (run.kernel.to_owned(), constants.iter().map(|c| c.1 == 1.0).collect());
         let gpu = self.refiner.gpu();
         let kernel = self.kernels.entry(key).or_insert_with(|| {
-            let shader = SHADERS.iter().find(|s| s.name == run.kernel).expect("it is in the table");
-            Kernel::new(gpu, shader, &constants).expect("the kernel compiles")
+            Kernel::new(gpu, shader(run.kernel), &constants).expect("the kernel compiles")
         });
         self.uniforms.set(gpu, &run.params);
         let mut commands = Commands::new(gpu, &self.uniforms);
@@ -122,6 +122,22 @@ impl Device {
             commands.finish().await
         });
         finished.expect("the kernel runs");
+    }
+}
+
+fn shader(kernel: &str) -> &'static Shader {
+    SHADERS.iter().find(|s| s.name == kernel).expect("it is in the table")
+}
+
+/// A constant of a kernel, or of a file that it shares.
+pub(crate) fn constant(kernel: &str, name: &str) -> u32 {
+    let module = naga::front::wgsl::parse_str(&shader(kernel).source()).expect("it is valid");
+    let named = |c: &naga::Constant| c.name.as_deref() == Some(name);
+    let found = module.constants.iter().map(|(_, c)| c).find(|c| named(c));
+    let found = found.unwrap_or_else(|| panic!("{kernel} has no constant {name}"));
+    match module.global_expressions[found.init] {
+        Expression::Literal(Literal::U32(value)) => value,
+        ref other => panic!("{name} is {other:?}"),
     }
 }
 
@@ -326,9 +342,10 @@ pub(crate) fn grid_words(grid: &Grid) -> (Vec<u32>, Vec<[u32; 4]>) {
     (grid.starts.clone(), grid.items.iter().zip(&grid.places).map(place).collect())
 }
 
-/// States of a candidate, as `shaders/shared/records.wgsl` has them.
+// States of a candidate, as `shaders/shared/records.wgsl` has them.
 pub(crate) const FREE: u32 = u32::MAX;
 pub(crate) const ON_CURVE: u32 = 0;
+pub(crate) const INSERTED: u32 = 1;
 pub(crate) const WAITING: u32 = u32::MAX - 1;
 
 // Bits of the kernels that leave points over.
@@ -409,5 +426,21 @@ pub(crate) fn compare_equal<T: PartialEq + std::fmt::Debug>(
 pub(crate) fn must(result: Result<(), String>) {
     if let Err(difference) = result {
         panic!("{difference}");
+    }
+}
+
+#[test]
+fn states_and_bits_are_those_of_the_kernels() {
+    for (name, value) in [
+        ("FREE", FREE),
+        ("ON_CURVE", ON_CURVE),
+        ("INSERTED", INSERTED),
+        ("WAITING", WAITING),
+        ("NEIGHBORHOOD", NEIGHBORHOOD),
+        ("CONFLICTS", CONFLICTS),
+        ("INSERTION", INSERTION),
+        ("NEXT_RING", NEXT_RING),
+    ] {
+        assert_eq!(constant("selection", name), value, "{name} in records.wgsl");
     }
 }

@@ -1,7 +1,8 @@
 //! The insertion kernel, class by class, with private rows and with rows in the arena, on the reference's candidates and classes.
 
 use crate::harness::{
-    ARENA_WORDS, Device, INSERTION, Step, compare, compare_equal, device, must, steps_with,
+    ARENA_WORDS, Device, INSERTION, Step, compare, compare_equal, constant, device, must,
+    steps_with,
 };
 use crate::tolerance::RADIUS;
 use surfine::records::Candidate;
@@ -18,10 +19,11 @@ fn insert(device: &mut Device, step: &Step, arrange: fn(&mut Vec<u32>)) -> (Vec<
         Some(*end)
     }));
     let points = device.buffer("points", &step.points());
+    let capacity = constant("insertion", "CAPACITY");
     let mut fans = step.fans(0);
     for (p, fan) in fans.iter_mut().enumerate() {
-        // What the rows of insertion.wgsl surely hold.
-        let is_short = fan.around[1] + fan.slots[1] + 3 <= 28;
+        // What the rows of the kernel surely hold.
+        let is_short = fan.around[1] + fan.slots[1] + 3 <= capacity;
         fan.left_over = if is_short && p.is_multiple_of(2) { 0 } else { INSERTION };
     }
     let fans = device.buffer("fans", &fans);

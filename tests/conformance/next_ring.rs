@@ -1,19 +1,20 @@
 //! The `next_ring` kernel on the reference's decisions, with private rows and with rows in the arena.
 
-use crate::harness::{ARENA_WORDS, NEXT_RING, compare, device, must, steps};
+use crate::harness::{ARENA_WORDS, NEXT_RING, compare, constant, device, must, steps};
 use crate::tolerance::RADIUS;
 
 #[test]
 fn covers_are_those_of_the_reference() {
     let mut device = device();
+    let capacity = constant("next_ring", "CAPACITY");
     for step in steps().iter().filter(|step| step.refine.effective_next_ring()) {
         let (n, count) = (step.level.len(), step.state.candidates.len());
         let state = &step.state;
         let points = device.buffer("points", &step.points());
         let mut fans = step.fans(0);
         for (p, fan) in fans.iter_mut().enumerate() {
-            // What the rows of next_ring.wgsl surely hold.
-            let is_short = fan.around[1] + fan.slots[1] < 48;
+            // What the rows of the kernel surely hold.
+            let is_short = fan.around[1] + fan.slots[1] < capacity;
             fan.left_over = if is_short && p.is_multiple_of(2) { 0 } else { NEXT_RING };
         }
         let fans = device.buffer("fans", &fans);

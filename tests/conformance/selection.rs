@@ -1,8 +1,8 @@
 //! The selection kernels on the reference's candidates.
 
 use crate::harness::{
-    Device, FREE, MIRROR_LINKS, NEXT_RING, Step, WAITING, compare, compare_equal, device,
-    grid_words, must, steps_with,
+    Device, FREE, INSERTED, MIRROR_LINKS, NEXT_RING, Step, WAITING, compare, compare_equal,
+    constant, device, grid_words, must, steps_with,
 };
 use crate::tolerance::RADIUS;
 use surfine::records::{Candidate, Fan};
@@ -137,6 +137,8 @@ fn select(device: &mut Device, step: &Step, overlaps: &Overlaps) {
 #[test]
 fn new_points_neighborhoods_and_radii_are_those_of_the_reference() {
     let mut device = device();
+    // What the rows of the kernel for them hold.
+    let longest = constant("next_ring", "CAPACITY") as usize;
     for step in steps_with(true) {
         let (n, count) = (step.level.len(), step.state.candidates.len());
         let slots = step.state.rings.len();
@@ -167,7 +169,7 @@ fn new_points_neighborhoods_and_radii_are_those_of_the_reference() {
             let what = format!("{}: N' of {p}", step.name);
             let expected = step.state.conflicts.around.of(p);
             must(compare_equal(&what, expected, &members[first..first + size]));
-            let is_long = size + step.state.rings.slots(p).len() + 1 > 48;
+            let is_long = size + step.state.rings.slots(p).len() + 1 > longest;
             assert_eq!(fan.left_over, if is_long { NEXT_RING } else { 0 }, "{what}");
         }
         let mut radii: Vec<f32> =
@@ -205,7 +207,7 @@ fn states(device: &mut Device, overlaps: &Overlaps, count: usize) -> Vec<u32> {
 }
 
 fn every_second(c: u32) -> u32 {
-    if c % 2 == 1 { FREE } else { 1 }
+    if c % 2 == 1 { FREE } else { INSERTED }
 }
 
 #[test]
@@ -216,7 +218,7 @@ fn a_candidate_waits_for_those_before_it() {
     let overlaps = chain(&mut device, step);
     select(&mut device, step, &overlaps);
     for (c, state) in (0..).zip(states(&mut device, &overlaps, count)) {
-        assert_eq!(state, if c < CHAIN { every_second(c) } else { 1 }, "candidate {c}");
+        assert_eq!(state, if c < CHAIN { every_second(c) } else { INSERTED }, "candidate {c}");
     }
 }
 
@@ -239,18 +241,18 @@ fn one_workgroup_does_the_last_rounds() {
         device.read_counters(&counters, &step.name);
         device.read::<u32>(&rounds, 2)[0]
     };
-    const TOO_MANY: u32 = 513;
-    assert_eq!(run(&mut device, &overlaps, TOO_MANY), TOO_MANY, "they are left to others");
+    let [few, rounds] = ["FEW", "ROUNDS"].map(|name| constant("selection_tail", name));
+    assert_eq!(run(&mut device, &overlaps, few + 1), few + 1, "they are left to others");
     assert_eq!(states(&mut device, &overlaps, count), vec![WAITING; count]);
     let mut left = CHAIN;
     let mut runs = 0;
     while left > 0 {
         let now = run(&mut device, &overlaps, left);
-        // Each of 16 rounds decides one at least.
-        assert!(now + left.min(16) <= left, "{left} waited, {now} wait");
+        // Each of the rounds decides one at least.
+        assert!(now + left.min(rounds) <= left, "{left} waited, {now} wait");
         (left, runs) = (now, runs + 1);
     }
-    assert!(runs <= CHAIN.div_ceil(16), "{runs} runs");
+    assert!(runs <= CHAIN.div_ceil(rounds), "{runs} runs");
     for (c, state) in (0..).zip(states(&mut device, &overlaps, count)) {
         assert_eq!(state, if c < CHAIN { every_second(c) } else { WAITING }, "candidate {c}");
     }
