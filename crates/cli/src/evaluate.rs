@@ -124,7 +124,7 @@ struct Heatmap<'a> {
 impl<'a> Heatmap<'a> {
     fn new(args: &EvaluateArgs, path: &'a Path, watch: &Watch) -> Result<Self, Failure> {
         let mut painter = Painter::new(args.backend, None, watch)?;
-        painter.check(args.size, Style::default().supersampling, watch)?;
+        painter.check(1, args.size, Style::default().supersampling, watch)?;
         Ok(Self { path, painter })
     }
 

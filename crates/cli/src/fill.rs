@@ -1,7 +1,7 @@
 //! `surfine fill`, and the filling before a refinement.
 
 use crate::args::{FillArgs, FillChoice};
-use crate::summary::name;
+use crate::summary::{self, name};
 use crate::watch::Watch;
 use crate::{Failure, files};
 use serde::Serialize;
@@ -90,22 +90,24 @@ impl Report {
 impl Display for Report {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let Self { input, output, points_in, points_out, holes, notes } = self;
-        writeln!(f, "input    {input}: {points_in} points")?;
-        writeln!(f, "output   {output}: {points_out} points")?;
-        f.write_str(&summary(holes))?;
+        writeln!(f, "input    {input}: {}", summary::points(*points_in))?;
+        writeln!(f, "output   {output}: {}", summary::points(*points_out))?;
+        f.write_str(&fill_summary(holes))?;
         notes.iter().try_for_each(|note| writeln!(f, "note     {note}"))
     }
 }
 
 /// One line, or none where no loop was chosen.
-pub(crate) fn summary(holes: &[Hole]) -> String {
+pub(crate) fn fill_summary(holes: &[Hole]) -> String {
     let filled: Vec<&Hole> = holes.iter().filter(|hole| hole.points > 0).collect();
     let points: usize = filled.iter().map(|hole| hole.points).sum();
     let seconds: f64 = holes.iter().map(|hole| hole.seconds).sum();
     match filled.len() {
         0 => String::new(),
-        1 => format!("holes    1 filled with {points} points in {seconds:.3} s\n"),
-        count => format!("holes    {count} filled with {points} points in {seconds:.3} s\n"),
+        count => {
+            let points = summary::points(points);
+            format!("holes    {count} filled with {points} in {seconds:.3} s\n")
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! `surfine holes`.
 
 use crate::args::HolesArgs;
-use crate::summary::name;
+use crate::summary::{self, name};
 use crate::{Failure, print, print_json};
 use serde::Serialize;
 use std::fmt::Write;
@@ -18,7 +18,7 @@ pub(crate) fn run(args: &HolesArgs) -> Result<(), Failure> {
         return print_json(&report);
     }
     if loops.is_empty() {
-        return print(&format!("{input}: {} points, no loops\n", points.len()));
+        return print(&format!("{input}: {}, no loops\n", summary::points(points.len())));
     }
     print(&table(&loops))
 }

@@ -64,9 +64,9 @@ impl<E: std::error::Error> From<E> for Failure {
     }
 }
 
-/// Prints one line on standard error; names of files and drivers' texts must not make it two.
+/// Prints one line on standard error; names of files and drivers' texts must not make it two, nor change the terminal.
 fn warn(message: &str) {
-    let message = message.replace(['\n', '\r'], " ");
+    let message = message.replace(char::is_control, " ");
     // There is nowhere left to complain if this fails.
     let _ = writeln!(std::io::stderr(), "surfine: {message}");
 }

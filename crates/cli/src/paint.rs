@@ -3,6 +3,7 @@
 use crate::Failure;
 use crate::args::{ColorChoice, RenderArgs};
 use crate::cloud::Cloud;
+use crate::summary::points;
 use crate::watch::Watch;
 use surfine_render::{Caption, Coloring, Scale, ramp};
 
@@ -70,7 +71,7 @@ impl Paint {
         let name = cloud.path.file_name().unwrap_or_default().to_string_lossy();
         let text = match args.caption.get(i) {
             Some(text) => text.clone(),
-            None => format!("{name}: {} points", cloud.points.len()),
+            None => format!("{name}: {}", points(cloud.points.len())),
         };
         Some(Caption { text, scale: self.scale.clone() })
     }

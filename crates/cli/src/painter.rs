@@ -1,9 +1,11 @@
 //! Who draws pictures.
 
-use crate::Failure;
-use crate::adapters::is_preferred;
+use crate::adapters::{is_named, is_preferred};
 use crate::args::BackendChoice;
+use crate::need::bytes;
+use crate::summary::counted;
 use crate::watch::Watch;
+use crate::{Failure, memory};
 use surfine::{Gpu, choose_adapter};
 use surfine_render::{Camera, DeviceSplats, Error, Picture, Renderer, Size, Splats, Style, cpu};
 
@@ -47,6 +49,8 @@ impl Painter {
                         Ok(Self::Cpu)
                     })
                 }
+                // One that the environment names is wanted, whatever it is.
+                Err(error) if is_named() => Err(error.into()),
                 _ => Ok(Self::Cpu),
             },
         }
@@ -59,15 +63,29 @@ impl Painter {
         }
     }
 
-    /// Refuses pictures without pixels, or with too many.
+    /// Refuses so many pictures side by side if they are without pixels, or have too many.
     pub(crate) fn check(
         &mut self,
+        count: usize,
         size: Size,
         supersampling: u32,
         watch: &Watch,
     ) -> Result<(), Failure> {
         let checked = self.on_gpu(watch, |renderer| renderer.check(size, supersampling))?;
-        Ok(checked.map_or_else(|| cpu::check(size, supersampling), Ok)?)
+        checked.map_or_else(|| cpu::check(size, supersampling), Ok)?;
+        let need = least_bytes(count, size, supersampling, matches!(self, Self::Cpu));
+        match memory::available() {
+            Some(available) if need > available => {
+                let (pictures, Size { width, height }) =
+                    (counted(count, "picture", "pictures"), size);
+                let [need, have] = [need, available].map(bytes);
+                Err(Failure(format!(
+                    "{pictures} of {width} x {height} pixels need {need} of memory at least, {have} are available: \
+                     take fewer or smaller ones"
+                )))
+            }
+            _ => Ok(()),
+        }
     }
 
     pub(crate) fn upload<'a>(
@@ -111,6 +129,16 @@ impl Painter {
             Err(error) => Err(error.into()),
         }
     }
+}
+
+/// Memory that so many pictures side by side surely take.
+fn least_bytes(count: usize, size: Size, supersampling: u32, on_cpu: bool) -> u64 {
+    let pixels = 4 * u64::from(size.width) * u64::from(size.height);
+    let all = pixels * count as u64;
+    // The CPU has a depth for each subpixel of the picture that it draws.
+    let depths = if on_cpu { pixels * u64::from(supersampling.pow(2)) } else { 0 };
+    // At the end all are copied into one.
+    (all + depths).max(2 * all)
 }
 
 fn warn(watch: &Watch, reason: &str) {

@@ -17,7 +17,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     let watch = Watch::new(args.quiet);
     let begin = Instant::now();
     let mut painter = Painter::new(args.backend, args.adapter.as_deref(), &watch)?;
-    painter.check(args.size, args.supersampling, &watch)?;
+    painter.check(args.inputs.len(), args.size, args.supersampling, &watch)?;
     let clouds = args.inputs.iter().map(|path| Cloud::read(path, &watch));
     let clouds: Vec<Cloud> = clouds.collect::<Result<_, _>>()?;
     let scene = Scene::new(args, &clouds, &watch)?;

@@ -77,6 +77,11 @@ pub(crate) fn per_second(count: usize, time: Duration) -> f64 {
     count as f64 / time.as_secs_f64().max(1e-9)
 }
 
+/// `1 point`, `3 points`.
+pub(crate) fn points(count: usize) -> String {
+    counted(count, "point", "points")
+}
+
 pub(crate) fn counted(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }

@@ -2,6 +2,7 @@
 
 use super::variant::VariantArgs;
 use super::{ADAPTER_ON_CPU, ThreadArgs};
+use clap::builder::NonEmptyStringValueParser;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -44,7 +45,7 @@ pub(crate) struct BenchArgs {
     #[arg(long, value_enum, value_name = "WHERE", default_value_t)]
     backend: BenchBackend,
     /// GPU adapter whose name or driver contains NAME, in any case
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", value_parser = NonEmptyStringValueParser::new())]
     pub(crate) adapter: Option<String>,
     /// Measured runs of each size and backend, 1 to 1000
     #[arg(long, value_name = "N", default_value = "3")]

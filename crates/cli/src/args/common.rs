@@ -16,6 +16,13 @@ pub(crate) struct ThreadArgs {
 impl ThreadArgs {
     /// Gives the CPU its threads; without a wish, those of `RAYON_NUM_THREADS` or one a core.
     pub(crate) fn start(&self) -> Result<(), Failure> {
+        let by_variable = std::env::var("RAYON_NUM_THREADS").ok().and_then(|n| n.parse().ok());
+        // So many would take for ever to start.
+        if let (None, Some(many @ 1025usize..)) = (self.threads, by_variable) {
+            return Err(Failure(format!(
+                "RAYON_NUM_THREADS is {many}: set it to 1024 at the most"
+            )));
+        }
         let threads = self.threads.unwrap_or(0).into();
         let failed =
             |e| Failure(format!("threads cannot be started: {e}: ask for fewer (--threads)"));

@@ -3,6 +3,7 @@
 use super::variant::{METHOD, VariantArgs};
 use super::{ADAPTER_ON_CPU, BackendChoice, FillChoice, SummaryArgs, ThreadArgs, holes, number};
 use clap::Args;
+use clap::builder::NonEmptyStringValueParser;
 use std::path::PathBuf;
 use surfine::{Boundary, RefineParams};
 use surfine_points::Interpolation;
@@ -43,7 +44,7 @@ pub(crate) struct RefineArgs {
     #[arg(long, value_enum, value_name = "WHERE", default_value_t)]
     backend: BackendChoice,
     /// GPU adapter whose name or driver contains NAME, in any case; implies --backend gpu
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", value_parser = NonEmptyStringValueParser::new())]
     pub(crate) adapter: Option<String>,
     #[command(flatten)]
     pub(crate) threads: ThreadArgs,
@@ -53,6 +54,7 @@ pub(crate) struct RefineArgs {
     boundary_angle: f32,
     /// Look for boundaries among the points with a value other than 0 in this property, and nowhere else
     #[arg(long, value_name = "PROPERTY", conflicts_with = "boundary_angle")]
+    #[arg(value_parser = NonEmptyStringValueParser::new())]
     pub(crate) boundary_property: Option<String>,
     /// The surface is closed: look for no boundary
     #[arg(long, conflicts_with_all = ["boundary_angle", "boundary_property"])]

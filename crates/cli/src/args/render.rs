@@ -1,7 +1,7 @@
 //! The arguments of `surfine render`.
 
 use super::{ADAPTER_ON_CPU, BackendChoice, ThreadArgs, number};
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{NonEmptyStringValueParser, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use surfine_points::DVec3;
@@ -100,7 +100,7 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_enum, value_name = "WHERE", default_value_t)]
     pub(crate) backend: BackendChoice,
     /// GPU adapter whose name or driver contains NAME, in any case; implies --backend gpu
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", value_parser = NonEmptyStringValueParser::new())]
     pub(crate) adapter: Option<String>,
     #[command(flatten)]
     pub(crate) threads: ThreadArgs,

@@ -3,8 +3,8 @@
 use super::backend::{Backend, Computed};
 use super::stats::Stats;
 use crate::args::RefineArgs;
-use crate::fill::{Hole, fill_notes, summary};
-use crate::summary::{Params, counted, in_order, name, per_second};
+use crate::fill::{Hole, fill_notes, fill_summary};
+use crate::summary::{Params, counted, in_order, name, per_second, points};
 use serde::Serialize;
 use std::fmt::{self, Display, Formatter};
 use std::time::Duration;
@@ -232,13 +232,13 @@ fn notes(args: &RefineArgs, read: Input<'_>, computed: &Computed, mode: Mode) ->
 
 impl Display for Report {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        writeln!(f, "input    {}: {} points", self.input, self.points_in)?;
-        writeln!(f, "output   {}: {} points", self.output, self.points_out)?;
+        writeln!(f, "input    {}: {}", self.input, points(self.points_in))?;
+        writeln!(f, "output   {}: {}", self.output, points(self.points_out))?;
         match (&self.adapter, self.threads) {
             (Some(adapter), _) => writeln!(f, "backend  gpu, {adapter}, mode {}", self.mode)?,
             (None, threads) => writeln!(f, "backend  cpu, threads: {}", threads.unwrap_or(1))?,
         }
-        f.write_str(&summary(&self.holes))?;
+        f.write_str(&fill_summary(&self.holes))?;
         write!(f, "{}", self.curves)?;
         for (number, level) in (1..).zip(&self.levels) {
             write!(f, "level {number}  {level}")?;

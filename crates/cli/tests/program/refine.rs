@@ -75,6 +75,19 @@ fn every_run_gives_the_same_bytes() {
 }
 
 #[test]
+fn too_many_threads_of_the_environment_are_refused() {
+    let folder = Folder::with_sample("sphere", "50");
+    let run = |more: &[&str]| {
+        let args = [&["refine", "in.ply", "-o", "out.ply", "--backend", "cpu"], more].concat();
+        let output = folder.command(&args).env("RAYON_NUM_THREADS", "100000").output().unwrap();
+        (output.status.code(), text(&output.stderr))
+    };
+    let (code, complaint) = run(&[]);
+    assert!(code == Some(1) && complaint.contains("RAYON_NUM_THREADS is 100000"), "{complaint}");
+    assert_eq!(run(&["--threads", "2"]), (Some(0), String::new()));
+}
+
+#[test]
 fn samples_depend_on_their_arguments_alone() {
     let folder = Folder::new();
     let sample = |more: &[&str]| {
@@ -414,6 +427,7 @@ fn bad_inputs_are_refused() {
     fs::create_dir(folder.path("folder")).unwrap();
     folder.fail(&["refine", "folder", "-o", "out.ply"], "folder: is not a regular file");
     folder.fail(&["refine", "two\nlines", "-o", "out.ply"], "two lines: cannot be read: ");
+    folder.fail(&["refine", "\x1b[31mred", "-o", "out.ply"], "error:  [31mred: cannot be read: ");
 }
 
 #[test]
@@ -494,7 +508,7 @@ fn failure_keeps_an_earlier_output() {
 fn wrong_usage_exits_with_2() {
     let folder = Folder::with_sample("sphere", "20");
     let refine = ["refine", "in.ply", "-o", "out.ply"];
-    let wrong: [&[&str]; 24] = [
+    let wrong: [&[&str]; 26] = [
         &["--without", "rules"],
         &["--literal", "--without", "next_ring"],
         &["--levels", "21"],
@@ -516,6 +530,8 @@ fn wrong_usage_exits_with_2() {
         &["--lambda2", "half"],
         &["--threads", "0"],
         &["--threads", "x"],
+        &["--adapter", ""],
+        &["--boundary-property", ""],
         &["--provenance=1"],
         &["--no-such-option"],
         &["more.ply"],

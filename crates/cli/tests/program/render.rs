@@ -204,6 +204,16 @@ fn pictures_that_cannot_be_are_refused() {
     }
 }
 
+/// Where the system tells how much memory there is.
+#[cfg(target_os = "linux")]
+#[test]
+fn pictures_that_memory_cannot_hold_are_refused() {
+    let folder = Folder::with_sample("sphere", "50");
+    let large = ["-o", "out.png", "--size", "32768x32768", "--supersampling", "1"];
+    let many = [&["render"], &["in.ply"; 2000][..], &large].concat();
+    folder.fail(&many, "2000 pictures of 32768 x 32768 pixels need 17.2 TB of memory at least");
+}
+
 #[test]
 fn cameras_without_a_direction_are_refused() {
     let folder = Folder::with_sample("sphere", "50");
@@ -295,6 +305,16 @@ fn names_that_take_no_number_are_refused() {
     let output = command.arg(name).output().unwrap();
     assert_eq!(output.status.code(), Some(1));
     assert!(text(&output.stderr).contains("must be UTF-8"));
+}
+
+#[test]
+fn adapter_that_the_environment_names_must_be_there() {
+    let folder = Folder::with_sample("sphere", "50");
+    let args = ["render", "in.ply", "-o", "out.png"];
+    let output = folder.command(&args).env("WGPU_ADAPTER_NAME", "no such thing").output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let complaint = text(&output.stderr);
+    assert!(complaint.starts_with("surfine: error: no GPU adapter"), "{complaint}");
 }
 
 #[test]

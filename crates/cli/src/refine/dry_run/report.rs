@@ -4,7 +4,7 @@ use super::pace::Pace;
 use crate::args::RefineArgs;
 use crate::memory;
 use crate::need::{DeviceNeed, Fits, Need, bytes};
-use crate::summary::{counted, name};
+use crate::summary::{name, points};
 use serde::Serialize;
 use std::fmt::{self, Display, Formatter};
 
@@ -132,10 +132,9 @@ impl Device {
 impl Display for Report {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         writeln!(f, "dry run  nothing is written; what is to come is estimated")?;
-        writeln!(f, "input    {}: {} points", self.input, self.points_in)?;
+        writeln!(f, "input    {}: {}", self.input, points(self.points_in))?;
         if self.points_filled > 0 {
-            let points = counted(self.points_filled, "point", "points");
-            writeln!(f, "holes    filled with {points}")?;
+            writeln!(f, "holes    filled with {}", points(self.points_filled))?;
         }
         match (&self.adapter, self.threads) {
             (Some(adapter), _) => writeln!(f, "backend  gpu, {adapter}")?,
