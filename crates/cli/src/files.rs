@@ -18,14 +18,6 @@ pub(crate) fn check_output(output: &Path) -> Result<(), Failure> {
     if names_folder(&target) {
         return Err(PlyError::NotAFile { path: output.into() }.into());
     }
-    if let Ok(metadata) = fs::metadata(&target) {
-        if !metadata.is_file() {
-            return Err(PlyError::NotAFile { path: output.into() }.into());
-        }
-        if metadata.permissions().readonly() {
-            return Err(failed(ErrorKind::PermissionDenied.into()).into());
-        }
-    }
     let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new("."));
     if !folder.is_dir() {
@@ -33,6 +25,17 @@ pub(crate) fn check_output(output: &Path) -> Result<(), Failure> {
         return Err(Failure(format!(
             "{output}: cannot be written: {folder} is no folder: make it"
         )));
+    }
+    match fs::metadata(&target) {
+        Ok(metadata) if !metadata.is_file() => {
+            return Err(PlyError::NotAFile { path: output.into() }.into());
+        }
+        Ok(metadata) if metadata.permissions().readonly() => {
+            return Err(failed(ErrorKind::PermissionDenied.into()).into());
+        }
+        // Such as a name that is too long, or a link to itself.
+        Err(error) if error.kind() != ErrorKind::NotFound => return Err(failed(error).into()),
+        _ => {}
     }
     // Permissions say too little: try. This file has no name, so that nothing can stay behind.
     tempfile::tempfile_in(folder).map_err(failed)?;

@@ -445,6 +445,13 @@ fn bad_outputs_are_refused_before_reading() {
         folder.fail(&["refine", "in.ply", "-o", output], part);
         folder.fail(&["sample", "sphere", "-n", "9", "-o", output], part);
     }
+    let long = format!("{}.ply", "x".repeat(300));
+    folder.fail(&["refine", "in.ply", "-o", &long], ".ply: cannot be written: ");
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("loop.ply", folder.path("loop.ply")).unwrap();
+        folder.fail(&["refine", "in.ply", "-o", "loop.ply"], "loop.ply: cannot be written: ");
+    }
     fs::write(folder.path("kept.ply"), "kept").unwrap();
     let mut permissions = fs::metadata(folder.path("kept.ply")).unwrap().permissions();
     permissions.set_readonly(true);
