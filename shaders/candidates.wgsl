@@ -41,8 +41,8 @@ fn note_rho(rho: f32) {
     }
 }
 
-/// Takes over a new point on a crease or boundary, which is inserted in any case. It has the ends of its segment as corners,
-/// the nearer one twice.
+/// Takes over a new point on a crease or boundary, which is inserted in any case. It has the ends of its segment as
+/// corners, the nearer one twice.
 fn add_curve_point(c: u32) {
     let record = record_of_candidate(c);
     let ends = record_ends(record);
@@ -72,8 +72,8 @@ fn add_candidate(c: u32) -> bool {
     return true;
 }
 
-/// The size of a triangle. Where neighbours are unevenly far, it counts as large as the neighbourhoods of its corners, but if
-/// simplified.
+/// The size of a triangle. Where neighbours are unevenly far, it counts as large as the neighbourhoods of its
+/// corners, but if simplified.
 fn size_of(corners: vec3<u32>, rho: f32) -> f32 {
     if !largest_first || simplified {
         return rho;

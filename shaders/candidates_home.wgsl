@@ -1,5 +1,6 @@
 // candidates: to which point the triangle of each slot belongs, that it is one candidate though three fans have it.
-// Twins: `find_fan` and `home` in crates/reference/src/triangle_homes.rs, `near_radius` in crates/reference/src/candidates.rs
+// Twins: `find_fan` and `home` in crates/reference/src/triangle_homes.rs, `near_radius` in
+// crates/reference/src/candidates.rs
 // One invocation per point.
 
 @group(0) @binding(2) var<storage, read> points: array<Point>;
@@ -53,8 +54,8 @@ fn candidates_home(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     fans[p].near = near_radius(p, block);
 }
 
-/// Finds to which slots those triangles of a fan belong that the fan of their first corner lacks: to that of their second one, or
-/// else to their own. Returns how many the latter are.
+/// Finds to which slots those triangles of a fan belong that the fan of their first corner lacks: to that of their
+/// second one, or else to their own. Returns how many the latter are.
 fn take_missed(p: u32, block: vec2<u32>) -> u32 {
     var count = 0u;
     var begin = first_entry(block);
@@ -117,8 +118,8 @@ fn slot_of(p: u32, begin: u32, end: u32) -> u32 {
 }
 
 /// λ1 r. The radii of the input may be too large, and would take far points for new neighbours: in the first step they
-/// count as no more than NATURAL times the distance to the farthest neighbour. A selection among all candidates has no use for
-/// radii, and asks for that distance; if simplified for nothing.
+/// count as no more than NATURAL times the distance to the farthest neighbour. A selection among all candidates has no
+/// use for radii, and asks for that distance; if simplified for nothing.
 fn near_radius(p: u32, block: vec2<u32>) -> f32 {
     let radius = points[p].radius;
     if !largest_first && (!first_radii || params.level > 1u || block.y == 0u) {

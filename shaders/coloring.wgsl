@@ -1,10 +1,11 @@
 // coloring: one round of a colouring of the conflict graph (Jones and Plassmann 1993).
 // Twin: crates/reference/src/coloring.rs
-// One invocation per point that waits, then one per point of the next range of priorities. dispatch: number of the round.
+// One invocation per point that waits, then one per point of the next range of priorities.
+// dispatch: number of the round.
 //
-// A point takes the lowest class that none of those in conflict with it has that choose before it, once these all have one. So
-// the classes are those of a sequential loop by priority, whatever rounds it takes to reach them. Most points choose in the round
-// of their range.
+// A point takes the lowest class that none of those in conflict with it has that choose before it, once these all have
+// one. So the classes are those of a sequential loop by priority, whatever rounds it takes to reach them. Most points
+// choose in the round of their range.
 
 @group(0) @binding(2) var<storage, read> fans: array<Fan>;
 /// Lists of candidates around points and of conflicts.

@@ -1,4 +1,5 @@
-// coloring: prepares the next round: how many workgroups it takes, for the points of the next range and those that wait.
+// coloring: prepares the next round: how many workgroups it takes, for the points of the next
+// range and those that wait.
 // One invocation. dispatch: number of that round, most workgroups of a row.
 
 /// Number of points that wait in even and in odd rounds.

@@ -1,5 +1,6 @@
-// conflicts: the candidates that each point may meet, and the points that must not be refined together with it, as far as its
-// own side shows. Twin: crates/reference/src/conflicts.rs
+// conflicts: the candidates that each point may meet, and the points that must not be refined together with it, as
+// far as its own side shows.
+// Twin: crates/reference/src/conflicts.rs
 // One invocation per point. dispatch: first point, number of points.
 
 @group(0) @binding(2) var<storage, read> points: array<Point>;
@@ -86,8 +87,8 @@ fn reach_of(p: u32) -> Reach {
     return reach;
 }
 
-/// Within which distance a candidate with that discard sphere is of interest: others can neither enter N' nor discard what
-/// might.
+/// Within which distance a candidate with that discard sphere is of interest: others can neither enter
+/// N' nor discard what might.
 fn reach_of_candidate(p: u32, reach: Reach, sphere: f32) -> f32 {
     let bears = COVER * WIDER * max(fans[p].near, reach.own_reach + sphere);
     return min(reach.largest, select(bears, reach.largest, reach.own == 0u));

@@ -1,5 +1,6 @@
-// conflicts: makes the graph symmetric. A conflict that only one side found is linked to the point of the other side, if that
-// chooses its class later. Twin: `with_others` in crates/reference/src/conflicts.rs
+// conflicts: makes the graph symmetric. A conflict that only one side found is linked to the point of the other side,
+// if that chooses its class later.
+// Twin: `with_others` in crates/reference/src/conflicts.rs
 // One invocation per point. The order of the links is that of timing; the colouring does not depend on it.
 
 @group(0) @binding(2) var<storage, read> fans: array<Fan>;

@@ -1,7 +1,8 @@
 // insertion: completes the new neighbourhood N' of each point of one class (section 5).
 // Twin: crates/reference/src/insertion.rs
-// N' is in shared/new_ring.wgsl, what it starts with in shared/gather.wgsl, the gaps between its members in shared/gaps.wgsl,
-// the choice of a candidate in shared/choice.wgsl, eq. 11 in shared/discard.wgsl, the radii in shared/next_radii.wgsl.
+// N' is in shared/new_ring.wgsl, what it starts with in shared/gather.wgsl, the gaps between its members in
+// shared/gaps.wgsl, the choice of a candidate in shared/choice.wgsl, eq. 11 in shared/discard.wgsl, the radii
+// in shared/next_radii.wgsl.
 // One invocation per point of the class. dispatch: the class from 1, its first member, its size, number of classes.
 //
 // Only candidates that earlier classes inserted are seen, so it does not matter when the members of one class run.
@@ -29,8 +30,9 @@ struct SharedCandidate {
     size: f32,
 }
 
-// Rows of N': candidates, and after the last one the points of the level that only bound gaps; angle on the tangent plane; place
-// relative to the centre; normal; radius of the discard sphere. Then its members in order, and the gaps between them.
+// Rows of N': candidates, and after the last one the points of the level that only bound gaps; angle on the
+// tangent plane; place relative to the centre; normal; radius of the discard sphere. Then its members in order,
+// and the gaps between them.
 const ID: u32 = 0u;
 const ANGLE: u32 = 1u;
 const OFFSET: u32 = 2u;
@@ -42,8 +44,8 @@ const GAP: u32 = 10u;
 const OUTER: u32 = 11u;
 const OUTER_OFFSET: u32 = 12u;
 const OUTER_SPHERE: u32 = 15u;
-// Rows of the fan's candidates: NONE once it was tried; angle; place; one over the distance; the one of Y that discards it, or
-// NONE, and the squared distance to that.
+// Rows of the fan's candidates: NONE once it was tried; angle; place; one over the distance; the one of Y that discards
+// it, or NONE, and the squared distance to that.
 const OWN: u32 = 16u;
 const OWN_ANGLE: u32 = 17u;
 const OWN_OFFSET: u32 = 18u;

@@ -1,6 +1,6 @@
 // neighborhood: the one-ring of each point (sections 3 and 4). Twin: crates/reference/src/neighborhood.rs
-// The Euclidean neighbourhood is in shared/ball.wgsl, the fuzzy planes in shared/fuzzy_planes.wgsl, members that come back in
-// shared/natural.wgsl.
+// The Euclidean neighbourhood is in shared/ball.wgsl, the fuzzy planes in shared/fuzzy_planes.wgsl, members that come
+// back in shared/natural.wgsl.
 // One invocation per point. dispatch: first point, number of points.
 
 @group(0) @binding(2) var<storage, read> points: array<Point>;
@@ -16,8 +16,8 @@
 /// A rule beyond the paper: see `Rules` in crates/points/src/params.rs.
 override natural_neighbors: bool = true;
 
-// Rows: a member's index, the verdict on it, its angle, its place on the tangent plane, its height over it (of the fuzzy
-// neighbourhood), and the members of the ring in order.
+// Rows: a member's index, the verdict on it, its angle, its place on the tangent plane, its height over it (of the
+// fuzzy neighbourhood), and the members of the ring in order.
 const ID: u32 = 0u;
 const VERDICT: u32 = 1u;
 const ANGLE: u32 = 2u;

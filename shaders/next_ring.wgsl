@@ -1,8 +1,9 @@
 // next_ring: radii that cover the next level's rings (ours). Twin: crates/reference/src/next_ring.rs
 // One invocation per point. dispatch: first point, number of points.
 //
-// The members of the old ring and of N' (by the paper's loop all inserted candidates within the new radius) go through the filter
-// of section 4; what is left must be within the radii, of the point and of the members alike. The radii are in shared/ahead.wgsl.
+// The members of the old ring and of N' (by the paper's loop all inserted candidates within the new radius) go
+// through the filter of section 4; what is left must be within the radii, of the point and of the members alike. The
+// radii are in shared/ahead.wgsl.
 
 @group(0) @binding(2) var<storage, read> points: array<Point>;
 @group(0) @binding(3) var<storage, read> fans: array<Fan>;
@@ -10,8 +11,8 @@
 @group(0) @binding(5) var<storage, read> candidates: array<Candidate>;
 /// The members of N'; by the paper's loop lists of candidates around points and of conflicts.
 @group(0) @binding(6) var<storage, read> around: array<u32>;
-/// Bits of the radii at the next level: of the points, then of the candidates; then of the points by this kernel, which reads the
-/// first ones.
+/// Bits of the radii at the next level: of the points, then of the candidates; then of the points by this kernel,
+/// which reads the first ones.
 @group(0) @binding(7) var<storage, read_write> next_radii: array<atomic<u32>>;
 @group(0) @binding(8) var<storage, read_write> arena: array<u32>;
 @group(0) @binding(9) var<storage, read_write> counters: Counters;
@@ -23,8 +24,8 @@ override accurate: bool = true;
 /// Whether the lists hold N' alone, by the selection.
 override largest_first: bool = true;
 
-// Rows: old points by index, then candidates; their angles; their places on the tangent plane; their heights over it (of the fuzzy
-// neighbourhood); the members of the ring in order.
+// Rows: old points by index, then candidates; their angles; their places on the tangent plane; their heights over it
+// (of the fuzzy neighbourhood); the members of the ring in order.
 const ID: u32 = 0u;
 const ANGLE: u32 = 1u;
 const X: u32 = 2u;

@@ -2,8 +2,8 @@
 // Twin: `select` in crates/reference/src/selection.rs
 // One invocation per candidate in round 0, then one per candidate that waits. dispatch: number of the round.
 //
-// A candidate is inserted unless one before it that discards it was. So what is inserted is what a sequential loop would insert,
-// whatever rounds it takes. Most candidates are linked to nobody.
+// A candidate is inserted unless one before it that discards it was. So what is inserted is what a sequential loop
+// would insert, whatever rounds it takes. Most candidates are linked to nobody.
 
 /// As Candidate, with the state atomic.
 @group(0) @binding(2) var<storage, read_write> candidates: array<SharedCandidate>;

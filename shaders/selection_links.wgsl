@@ -1,5 +1,6 @@
-// selection: links each contested candidate to those in the fans of its corners that discard it (eq. 11): the larger ones, and those
-// that are not contested. Twin: `contested_overlaps` in crates/reference/src/contested.rs
+// selection: links each contested candidate to those in the fans of its corners that discard it (eq. 11): the larger
+// ones, and those that are not contested.
+// Twin: `contested_overlaps` in crates/reference/src/contested.rs
 // One invocation per candidate that waits for round 1.
 
 @group(0) @binding(2) var<storage, read> candidates: array<Candidate>;

@@ -1,7 +1,7 @@
 // selection: links each candidate to those before it whose discard sphere (eq. 11) holds it.
 // Twin: `overlaps` in crates/reference/src/selection.rs
-// One invocation per candidate, which looks for those in its own sphere. The order of the links is that of timing; nothing
-// depends on it.
+// One invocation per candidate, which looks for those in its own sphere. The order of the links is that of
+// timing; nothing depends on it.
 
 @group(0) @binding(2) var<storage, read> points: array<Point>;
 /// All but their state is read.
@@ -40,8 +40,8 @@ fn selection_overlaps(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num
     note_cut_loops(candidates[h].corners.x);
 }
 
-/// Links the others in the sphere. Some of them are listed, then looked at, and so on: branches that neighbouring candidates take
-/// differently cost more.
+/// Links the others in the sphere. Some of them are listed, then looked at, and so on: branches that neighbouring
+/// candidates take differently cost more.
 fn add_links(h: u32, sphere: f32) {
     let center = Seen(candidates[h].place.xyz, candidates[h].normal, record_of_candidate(h));
     let near_curves = is_near_curves(center.position, sphere);

@@ -2,8 +2,8 @@
 // Twin: `selection` in crates/reference/src/selection.rs
 // One invocation per point.
 //
-// N' is what stands for the candidates of the fan, in their order. The point's radius covers N', and stays where that is
-// empty; the members of N' cover the point and their neighbours in N'.
+// N' is what stands for the candidates of the fan, in their order. The point's radius covers N', and stays where that
+// is empty; the members of N' cover the point and their neighbours in N'.
 
 @group(0) @binding(2) var<storage, read> points: array<Point>;
 @group(0) @binding(3) var<storage, read_write> fans: array<Fan>;

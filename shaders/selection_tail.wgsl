@@ -1,4 +1,5 @@
-// selection: the last rounds, when few candidates wait: one workgroup goes through them in less time than a dispatch for each takes.
+// selection: the last rounds, when few candidates wait: one workgroup goes through them in less time than
+// a dispatch for each takes.
 // Twin: `select` in crates/reference/src/selection.rs
 // One workgroup. dispatch: number of the first of these rounds.
 

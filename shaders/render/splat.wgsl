@@ -6,8 +6,8 @@
 // Discs that turn their backs come after the others, and only where their centre is not hidden by those: around the
 // outline of a closed surface they would stick out from behind it.
 
-/// Radius of a disc for each unit of a point's radius. The discs of the visibility passes are smaller and decide what is
-/// seen; those of the attribute pass overlap more, so that they blend smoothly.
+/// Radius of a disc for each unit of a point's radius. The discs of the visibility passes are smaller and decide what
+/// is seen; those of the attribute pass overlap more, so that they blend smoothly.
 override disc: f32 = 1.0;
 /// Share of a disc's radius by which the visibility passes push it away from the eye: discs that overlap within this
 /// depth are one surface and blend. 0 in the attribute pass.

@@ -34,7 +34,8 @@ fn cover_ring(p: u32, size: u32) {
     raise(p, farthest);
 }
 
-/// Raises the radius of a point or, after these, of a candidate. Most are large enough: to look costs less than to write.
+/// Raises the radius of a point or, after these, of a candidate. Most are large enough: to look
+/// costs less than to write.
 fn raise(id: u32, radius: u32) {
     let at = select(id, id + params.points + params.candidates, id < params.points);
     if atomicLoad(&next_radii[at]) < radius {

@@ -14,8 +14,8 @@ struct Looked {
     found: u32,
 }
 
-/// Stores both lists; false if there are more conflicts than fit. Too small a buffer is seen by the host in the counters, and the
-/// stage runs again.
+/// Stores both lists; false if there are more conflicts than fit. Too small a buffer is seen by the host in the
+/// counters, and the stage runs again.
 fn store(p: u32, reach: Reach, size: u32) -> bool {
     let looked = look_around(p, reach, size);
     let found = looked.found;
@@ -55,8 +55,9 @@ fn store(p: u32, reach: Reach, size: u32) -> bool {
     return true;
 }
 
-/// Looks at the candidates around p: lists the corners of those within the distance of conflicts in the row FOUND, each once and
-/// not p itself, and keeps those that p sees within its largest radius. Says which kernels' rows are too short for them.
+/// Looks at the candidates around p: lists the corners of those within the distance of conflicts in the row
+/// FOUND, each once and not p itself, and keeps those that p sees within its largest radius. Says which kernels'
+/// rows are too short for them.
 fn look_around(p: u32, reach: Reach, size: u32) -> Looked {
     let center = Seen(points[p].position, points[p].normal, record_of(p));
     let near_curves = is_near_curves(center.position, reach.largest);
@@ -84,8 +85,8 @@ fn look_around(p: u32, reach: Reach, size: u32) -> Looked {
     for (var i = 0u; i < conflicting; i++) {
         looked.found = note_conflicts(p, candidates[word(CLOSE, i)].corners, looked.found);
     }
-    // Besides those that are near already, each own candidate can enter N' or bring in one of Y, and curves bound gaps. All
-    // that are seen may be listed at once.
+    // Besides those that are near already, each own candidate can enter N' or bring in one of Y, and curves bound gaps.
+    // All that are seen may be listed at once.
     let longest = max(close + reach.own + 2u, looked.seen);
     fans[p].left_over = select(0u, INSERTION, longest + 1u > LONGEST_NEW)
         | select(0u, NEXT_RING, looked.seen + fans[p].slots.y + 1u > LONGEST_NEXT);

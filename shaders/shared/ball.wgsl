@@ -1,6 +1,6 @@
 // The Euclidean neighbourhood N^E of a point without the pairs that eq. 6 rejects (sections 3 and 4).
-// Twins: `find_balls` in crates/reference/src/neighborhood.rs, `judge` (eq. 6) in crates/reference/src/pairs.rs and `project`
-// (eq. 9) in crates/reference/src/ball.rs
+// Twins: `find_balls` in crates/reference/src/neighborhood.rs, `judge` (eq. 6) in crates/reference/src/pairs.rs and
+// `project` (eq. 9) in crates/reference/src/ball.rs
 //
 // Expects what neighborhood.wgsl declares.
 
@@ -18,8 +18,8 @@ const NARROW: f32 = 0.7;
 /// Share of the bound of eq. 6 from which pairs are doubtful.
 const DOUBTFUL_SHARE: f32 = 0.5;
 
-/// Lists N^E (eq. 7), all points within the radius but those in the same place. Returns how many they are, of which no more
-/// are listed than fit.
+/// Lists N^E (eq. 7), all points within the radius but those in the same place. Returns how many they are, of which no
+/// more are listed than fit.
 fn gather_ball(p: u32) -> u32 {
     return list_within(points[p].position, points[p].radius, one_place(points[p].radius));
 }
@@ -69,9 +69,9 @@ fn keep_consistent(p: u32, size: u32) -> u32 {
     return members;
 }
 
-/// Keeps the members that the centre sees, and returns how many are left. All are unless one of them or the centre lies on a curve, or
-/// one turns away as far as across a crease and there are creases around: a loop of its own, since what it asks costs much and few
-/// points need it.
+/// Keeps the members that the centre sees, and returns how many are left. All are unless one of them or the centre lies
+/// on a curve, or one turns away as far as across a crease and there are creases around: a loop of its own, since what
+/// it asks costs much and few points need it.
 fn keep_seen(p: u32, members: u32, meets_curves: bool, turns: bool) -> u32 {
     let radius = points[p].radius;
     let center = Seen(points[p].position, points[p].normal, record_of(p));

@@ -5,7 +5,8 @@
 /// Widens a query a little, so that rounding at a cell's face can't lose an entry.
 const SLACK: f32 = 1.0001;
 
-/// A walk over the cells that a ball touches: rows along x, each one run of entries, or two where the period ends inside.
+/// A walk over the cells that a ball touches: rows along x, each one run of entries, or two
+/// where the period ends inside.
 struct BallWalk {
     low: vec3<i32>,
     high: vec3<i32>,

@@ -17,7 +17,8 @@ fn closest_candidate() -> u32 {
     return best;
 }
 
-/// The candidate strictly inside gap i whose smaller angle to the two ends is the largest: angles are compared by their cosines.
+/// The candidate strictly inside gap i whose smaller angle to the two ends is the largest: angles are
+/// compared by their cosines.
 fn best_split(i: u32) -> u32 {
     let begin = word(ORDER, i);
     let end = word(ORDER, next_member(i));

@@ -1,4 +1,5 @@
-// How many entries of the grid are in a ball. Expects ball_walk.wgsl and `places`: positions and numbers of the entries.
+// How many entries of the grid are in a ball. Expects ball_walk.wgsl and `places`: positions
+// and numbers of the entries.
 
 /// Counts the entries within the radius.
 fn count_within(center: vec3<f32>, radius: f32) -> u32 {

@@ -8,7 +8,8 @@ override with_curves: bool = false;
 /// Whether there are creases among them. Boundaries have one side and hide nothing.
 override with_creases: bool = false;
 
-// Words of the table: of records, then of segments; after these come the first entry of each cell and one more, and the entries.
+// Words of the table: of records, then of segments; after these come the first entry of each cell and
+// one more, and the entries.
 const RECORD_WORDS: u32 = 24u;
 const SEGMENT_WORDS: u32 = 4u;
 

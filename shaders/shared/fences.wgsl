@@ -5,8 +5,8 @@
 /// A rule beyond the paper: see `Rules` in crates/points/src/params.rs.
 override separating_segments: bool = true;
 
-/// Segments can separate two points if their middle is within this share of the points' distance, and half of the longest
-/// segment, from the middle of the points.
+/// Segments can separate two points if their middle is within this share of the points' distance, and half of the
+/// longest segment, from the middle of the points.
 const FENCE_REACH: f32 = 0.75;
 
 /// Whether there may be curves within a radius around a point.
@@ -67,8 +67,8 @@ fn touches(segment: u32, ends: vec2<u32>, record: u32) -> bool {
     return record_segment(record) == segment || record_first(ends.x) == first || record_first(ends.y) == first;
 }
 
-/// Whether two points lie on the two sides of a segment, seen from an end. At a corner either may lie on a third one: that
-/// end can't tell then.
+/// Whether two points lie on the two sides of a segment, seen from an end. At a corner either may lie on a third one:
+/// that end can't tell then.
 fn parts(one: u32, two: u32, a: Seen, b: Seen) -> bool {
     let side_a = side_of(one, a);
     let side_b = side_of(one, b);

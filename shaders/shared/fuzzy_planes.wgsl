@@ -4,12 +4,14 @@
 
 /// Largest badness of a neighbour: 1, and a margin because regular grids give exactly that.
 const WORST_BADNESS: f32 = 1.001;
-/// Members over which the loop has a constant length: drivers unroll it, and private rows at constant places cost them little.
+/// Members over which the loop has a constant length: drivers unroll it, and private rows at
+/// constant places cost them little.
 const UNROLLED: u32 = MOST * u32(!IN_ARENA);
 
 /// Whether the badness w_i (eq. 8) of member i is above 1: it lies behind its successors and predecessors.
 ///
-/// The maximum is taken over signed squares of sin α_ij, which order the same and need no root per pair. An empty set has -2.
+/// The maximum is taken over signed squares of sin α_ij, which order the same and need no root per
+/// pair. An empty set has -2.
 fn is_behind(i: u32, members: u32) -> bool {
     let own = OnPlane(number(X, i), number(Y, i), plane_vector(i));
     var sines = vec2(-2.0);
@@ -50,8 +52,8 @@ fn is_worst(sines: vec2<f32>) -> bool {
     return plane_badness(sines.x) + plane_badness(sines.y) > WORST_BADNESS;
 }
 
-/// The vector whose fuzzy plane is tested, in the frame of the tangent plane: q' - p for the accurate neighbourhood, p_i - p for the
-/// fuzzy one.
+/// The vector whose fuzzy plane is tested, in the frame of the tangent plane: q' - p for the accurate neighbourhood,
+/// p_i - p for the fuzzy one.
 fn plane_vector(i: u32) -> vec3<f32> {
     if accurate {
         return vec3(number(X, i), number(Y, i), 0.0);

@@ -1,4 +1,5 @@
-// Angles between the members of N' that follow each other (section 5, eq. 5). Twin: crates/reference/src/new_ring/gaps.rs
+// Angles between the members of N' that follow each other (section 5, eq. 5).
+// Twin: crates/reference/src/new_ring/gaps.rs
 //
 // Expects what insertion.wgsl and new_ring.wgsl have.
 

@@ -43,8 +43,8 @@ fn widest_gap(ring: u32) -> f32 {
     return widest;
 }
 
-/// Whether the kept members next to member i on both sides leave a gap that may miss a neighbour. Members that come back
-/// are not among them.
+/// Whether the kept members next to member i on both sides leave a gap that may miss a neighbour. Members that
+/// come back are not among them.
 fn is_in_open_gap(i: u32, ring: u32) -> bool {
     let x = number(X, i);
     let y = number(Y, i);

@@ -9,8 +9,8 @@ override step_normals: bool = true;
 
 /// Cosine of 110°: a triangle is steep if its normal is farther from that of a corner.
 const STEEP: f32 = -0.34202014;
-/// Cosine of 15°, and one over its distance from the cosine of 5°: between them a normal blends from the interpolated to
-/// the exact one.
+/// Cosine of 15°, and one over its distance from the cosine of 5°: between them a normal blends from the
+/// interpolated to the exact one.
 const FAR: f32 = 0.9659258;
 const BLEND: f32 = 33.03724;
 
@@ -60,8 +60,8 @@ const STEP: f32 = 0.4;
 /// One over the width of the range below it where an edge is both.
 const STEP_BLEND: f32 = 5.0;
 
-/// The mean of two normals, reflected across the plane that halves their edge; the steeper the step of an edge, the less
-/// is reflected. Zero where they cancel.
+/// The mean of two normals, reflected across the plane that halves their edge; the steeper the step of an edge, the
+/// less is reflected. Zero where they cancel.
 fn edge_normal(a: Corner, b: Corner, size: f32) -> vec3<f32> {
     let sum = a.normal + b.normal;
     let u = (b.position - a.position) * (1.0 / size);

@@ -25,7 +25,8 @@ fn store_radii() {
     atomicStore(&next_radii[ring.p], bitcast<u32>(radius));
 }
 
-/// What covers the side from the member at place i to the next one; 0 where there is none, or one of them only bounds gaps.
+/// What covers the side from the member at place i to the next one; 0 where there is none, or one
+/// of them only bounds gaps.
 fn side_cover(i: u32) -> u32 {
     let a = word(ORDER, i);
     let b = word(ORDER, next_member(i));

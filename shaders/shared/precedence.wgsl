@@ -2,8 +2,8 @@
 //
 // Expects `candidates` and what priority.wgsl has.
 
-/// Whether a candidate is decided before another one: points on curves are before all, then comes the larger one, then that of
-/// the higher hashed index.
+/// Whether a candidate is decided before another one: points on curves are before all, then comes the larger one, then
+/// that of the higher hashed index.
 fn precedes(a: u32, b: u32) -> bool {
     let size_a = candidates[a].size;
     let size_b = candidates[b].size;

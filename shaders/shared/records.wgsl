@@ -6,8 +6,8 @@ struct Point {
     position: vec3<f32>,
     radius: f32,
     normal: vec3<f32>,
-    /// Low byte: the refinement step that inserted the point; 0 for input points. Above it one more than the point's record
-    /// if it lies on a crease or boundary.
+    /// Low byte: the refinement step that inserted the point; 0 for input points. Above it one more than the point's
+    /// record if it lies on a crease or boundary.
     level: u32,
 }
 
@@ -15,14 +15,15 @@ struct Point {
 struct Fan {
     /// The first of its ring entries and their number: its slots.
     slots: vec2<u32>,
-    /// Within this distance new points are new neighbours: λ1 r, or less in the first step. For a selection among all candidates
-    /// λ1 times the distance to the farthest neighbour; 0 if simplified.
+    /// Within this distance new points are new neighbours: λ1 r, or less in the first step. For a selection among all
+    /// candidates λ1 times the distance to the farthest neighbour; 0 if simplified.
     near: f32,
     /// A bit for each kernel that leaves it to its variant with rows in the arena.
     left_over: u32,
     /// The first of the candidates around it and their number; of the selection, those in N'.
     around: vec2<u32>,
-    /// The number of its conflicts, which follow these, and how many of them come first since they choose their class before it.
+    /// The number of its conflicts, which follow these, and how many of them come first since they
+    /// choose their class before it.
     conflicts: vec2<u32>,
 }
 
@@ -31,13 +32,13 @@ struct Candidate {
     /// Position, and ρ: the largest distance to the three corners, or -1 where the triangle has no candidate.
     place: vec4<f32>,
     normal: vec3<f32>,
-    /// The class that inserted it, from 1; or ON_CURVE, or FREE. Of a selection among all candidates also WAITING, and INSERTED for
-    /// any class.
+    /// The class that inserted it, from 1; or ON_CURVE, or FREE. Of a selection among all candidates also WAITING,
+    /// and INSERTED for any class.
     state: u32,
     /// Corners of its triangle, smallest index first and orientation kept.
     corners: vec3<u32>,
-    /// ρ, or λ1 times the distance from its corners to their farthest neighbours in the mean, whichever is larger. By the paper's
-    /// loop, or if simplified, ρ.
+    /// ρ, or λ1 times the distance from its corners to their farthest neighbours in the mean, whichever is larger. By
+    /// the paper's loop, or if simplified, ρ.
     size: f32,
 }
 

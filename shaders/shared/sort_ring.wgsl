@@ -10,7 +10,8 @@ fn sort_ring(members: u32) -> u32 {
     var size = 0u;
     for (var i = 0u; i < members; i++) {
         if is_kept(i) {
-            // Long rows keep few of their members. To compare each with all of them would take loops to the driver's limit.
+            // Long rows keep few of their members. To compare each with all of them would take
+            // loops to the driver's limit.
             if IN_ARENA {
                 insert(i, size);
             } else {

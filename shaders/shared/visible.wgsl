@@ -55,8 +55,8 @@ fn in_wedge(record: u32, d: vec3<f32>) -> bool {
     return angle >= wedge.x && angle <= wedge.y;
 }
 
-/// The side of a crease point on which another point lies, or NONE; for a boundary point itself, if the other one lies in
-/// its fan.
+/// The side of a crease point on which another point lies, or NONE; for a boundary point itself, if the
+/// other one lies in its fan.
 fn side_of(record: u32, other: Seen) -> u32 {
     let d = other.position - record_position(record);
     let d2 = dot3(d, d);
@@ -85,8 +85,8 @@ fn side_of(record: u32, other: Seen) -> u32 {
     return select(NONE, best, valid || !valid_sides);
 }
 
-/// Whether records of two points see each other; `agree` says whether each lies on the other's side. Those next to each other on a
-/// curve do on their own side only.
+/// Whether records of two points see each other; `agree` says whether each lies on the other's side. Those next to each
+/// other on a curve do on their own side only.
 fn records_see(a: u32, b: u32, agree: bool) -> bool {
     if record_first(a) == record_first(b) {
         return false;

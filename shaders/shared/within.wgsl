@@ -1,7 +1,8 @@
-// The entries of the grid in a ball. Expects ball_walk.wgsl, `places`: positions and numbers of the entries, and the row ID.
+// The entries of the grid in a ball. Expects ball_walk.wgsl, `places`: positions and numbers of
+// the entries, and the row ID.
 
-/// Lists the entries within the radius whose squared distance is above `beyond`, and returns how many they are, of which no more
-/// are listed than fit.
+/// Lists the entries within the radius whose squared distance is above `beyond`, and returns how many they are, of
+/// which no more are listed than fit.
 fn list_within(center: vec3<f32>, radius: f32, beyond: f32) -> u32 {
     var size = 0u;
     var walk = ball_walk(center, radius);

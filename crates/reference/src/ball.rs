@@ -1,4 +1,5 @@
-//! The members of neighbourhoods on the tangent planes of their centres (section 4, eq. 9). Twin: `shaders/shared/ball.wgsl`.
+//! The members of neighbourhoods on the tangent planes of their centres (section 4, eq. 9).
+//! Twin: `shaders/shared/ball.wgsl`.
 
 use crate::angles::direction_angles;
 use crate::columns::{BLOCK, Column, LANES, vectorized};
@@ -17,7 +18,8 @@ pub(crate) struct Members {
     ends: Vec<usize>,
     pub(crate) ids: Vec<u32>,
     pairs: Pairs,
-    /// Orthogonal projections `q_i`, up to positive factors, in units of the radius; for the accurate neighbourhood `q'_i` (eq. 9).
+    /// Orthogonal projections `q_i`, up to positive factors, in units of the radius; for the accurate
+    /// neighbourhood `q'_i` (eq. 9).
     x: Vec<f32>,
     y: Vec<f32>,
     angle: Vec<f32>,
@@ -65,8 +67,8 @@ impl Members {
         columns.into_iter().for_each(|column| column.resize(room, 0.0));
     }
 
-    /// Adds a member to the neighbourhood that is being made, if it is wanted; there must be room. It is written in any case and
-    /// counted conditionally: a branch would be guessed wrong often.
+    /// Adds a member to the neighbourhood that is being made, if it is wanted; there must be room. It is written in any
+    /// case and counted conditionally: a branch would be guessed wrong often.
     #[inline(always)]
     pub(crate) fn offer(&mut self, id: u32, d: Vec3, other: Vec3, is_wanted: bool) {
         self.ids[self.len] = id;
@@ -93,7 +95,8 @@ impl Members {
         blocks.enumerate().for_each(|(i, verdicts)| judge(self.pairs.block(i), verdicts));
     }
 
-    /// Finds the places of all on the tangent planes. Those exactly along the normal have no direction there: they are out.
+    /// Finds the places of all on the tangent planes. Those exactly along the normal have no
+    /// direction there: they are out.
     pub(crate) fn project(&mut self, fuzzy: bool) {
         let Self { pairs, x, y, height, angle, verdicts, .. } = self;
         let project = if fuzzy { project::<true> } else { project::<false> };

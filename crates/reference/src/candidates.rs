@@ -1,7 +1,7 @@
 //! Candidates `L_p` (section 5, eq. 12): one for each triangle of the fans. Twins: `shaders/candidates*.wgsl`.
 //!
-//! Most triangles are in the fans of all three corners. They are one candidate, which all of these may insert. It belongs to the
-//! first corner, from the smallest index on, whose fan has the triangle.
+//! Most triangles are in the fans of all three corners. They are one candidate, which all of these may insert. It
+//! belongs to the first corner, from the smallest index on, whose fan has the triangle.
 
 use crate::columns::BLOCK;
 use crate::lists::filled;
@@ -22,8 +22,8 @@ pub const NATURAL: f32 = 1.25;
 /// Of a sum of three, their mean.
 pub const THIRD: f32 = 1.0 / 3.0;
 
-/// The possible new points of all fans, by the slots to which they belong, then the new points on creases and boundaries,
-/// which are inserted in any case.
+/// The possible new points of all fans, by the slots to which they belong, then the new points on creases and
+/// boundaries, which are inserted in any case.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Candidates {
     /// Position, displaced by φ.
@@ -36,11 +36,12 @@ pub struct Candidates {
     pub corners: Vec<[u32; 3]>,
     /// The candidate of each slot; [`NO_POINT`] for slots without a triangle.
     pub of_slot: Vec<u32>,
-    /// Their sizes, by which the selection goes: ρ, or λ1 times the distance from the corners to their farthest neighbours in the
-    /// mean, whichever is larger; by the paper's loop, or if `simplified`, ρ. 0 where there is no candidate.
+    /// Their sizes, by which the selection goes: ρ, or λ1 times the distance from the corners to their
+    /// farthest neighbours in the mean, whichever is larger; by the paper's loop, or if `simplified`, ρ. 0
+    /// where there is no candidate.
     pub sizes: Vec<f32>,
-    /// Of each point: within this distance new points are new neighbours (section 5). For a selection among all candidates λ1
-    /// times the distance to the farthest neighbour; 0 if `simplified`.
+    /// Of each point: within this distance new points are new neighbours (section 5). For a selection among all
+    /// candidates λ1 times the distance to the farthest neighbour; 0 if `simplified`.
     pub near: Vec<f32>,
     /// The first of the new points on creases and boundaries.
     pub first_on_curve: usize,
@@ -133,8 +134,8 @@ impl Candidates {
     }
 }
 
-/// The size of a triangle. Where neighbours are unevenly far, it counts as large as the neighbourhoods of its corners, but if
-/// `simplified`.
+/// The size of a triangle. Where neighbours are unevenly far, it counts as large as the neighbourhoods of its
+/// corners, but if `simplified`.
 #[inline(always)]
 fn size_of(near: &[f32], corners: [u32; 3], rho: f32, params: &RefineParams) -> f32 {
     if !params.rules.largest_first || params.simplified || rho <= 0.0 {
@@ -144,9 +145,9 @@ fn size_of(near: &[f32], corners: [u32; 3], rho: f32, params: &RefineParams) -> 
     rho.max((a + b + c) * THIRD)
 }
 
-/// `λ1 r`. The radii of the input may be too large, and would take far points for new neighbours: in the first step they
-/// count as no more than [`NATURAL`] times the distance to the farthest neighbour. A selection among all candidates has no use
-/// for radii, and asks for that distance; if `simplified` for nothing.
+/// `λ1 r`. The radii of the input may be too large, and would take far points for new neighbours: in the first step
+/// they count as no more than [`NATURAL`] times the distance to the farthest neighbour. A selection among all
+/// candidates has no use for radii, and asks for that distance; if `simplified` for nothing.
 fn near_radius(level: &Level, rings: &Rings, params: &RefineParams, p: usize) -> f32 {
     let (radius, rules) = (level.radii[p], params.rules);
     let believes_radii = !rules.first_radii || level.step > 0 || rings.ring(p).is_empty();

@@ -27,8 +27,8 @@ pub const RANGES: usize = 32;
 
 /// Gives every point, in the order of priority, the lowest class that none of its neighbours `before` it chose.
 ///
-/// A point's choice depends on those before it alone. So the points of a range choose in any order, on all cores, and those with
-/// a neighbour before them that has not chosen yet try again; the kernels do the same.
+/// A point's choice depends on those before it alone. So the points of a range choose in any order, on all cores, and
+/// those with a neighbour before them that has not chosen yet try again; the kernels do the same.
 pub fn coloring(before: &Lists) -> Classes {
     let points = before.len() as u32;
     let range = |&p: &u32| scramble(p) as usize / (1 << 32 >> RANGES.ilog2());

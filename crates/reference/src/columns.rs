@@ -1,8 +1,9 @@
 //! Numbers of many points side by side, so that loops over them run in vector registers.
 //!
-//! The loops call the formulas of single points. The compiler makes vectors of them where nothing in the loop branches for
-//! good, where columns have a length that it knows, and where what is written can't be what is read: so each such loop is a
-//! function of its own ([`vectorized`]). Operations stay the same for each point, and so do the bytes: nothing is fused.
+//! The loops call the formulas of single points. The compiler makes vectors of them where nothing in the loop
+//! branches for good, where columns have a length that it knows, and where what is written can't be what is read:
+//! so each such loop is a function of its own ([`vectorized`]). Operations stay the same for each point, and so do
+//! the bytes: nothing is fused.
 
 use glam::Vec3;
 
@@ -36,10 +37,15 @@ impl Vectors {
     }
 }
 
-/// Defines functions whose loops run in vector registers: in those of AVX2, eight numbers wide, where the processor has them,
-/// else in those that every processor of the target has.
+/// Defines functions whose loops run in vector registers: in those of AVX2, eight numbers wide, where the processor has
+/// them, else in those that every processor of the target has.
 macro_rules! vectorized {
-    ($($(#[$attribute:meta])* $visible:vis fn $name:ident$([$($generics:tt)*] [$($parameter:ident)*])?($($argument:ident: $type:ty),* $(,)?) $body:block)*) => {$(
+    ($(
+        $(#[$attribute:meta])*
+        $visible:vis fn $name:ident $([$($generics:tt)*] [$($parameter:ident)*])? (
+            $($argument:ident: $type:ty),* $(,)?
+        ) $body:block
+    )*) => {$(
         $(#[$attribute])*
         $visible fn $name$(<$($generics)*>)?($($argument: $type),*) {
             #[inline(always)]

@@ -1,12 +1,14 @@
-//! What may happen around each point: the candidates that it may meet, and the conflict graph `T` of the points that must not
-//! be refined at the same time. Twins: `shaders/conflicts*.wgsl` and `shaders/shared/around.wgsl`.
+//! What may happen around each point: the candidates that it may meet, and the conflict graph `T` of the points that
+//! must not be refined at the same time.
+//! Twins: `shaders/conflicts*.wgsl` and `shaders/shared/around.wgsl`.
 //!
 //! The insertion around a point (section 5) depends on those before it. Two points commute unless
 //! a candidate of one lies within `λ1 r` of the other, so that it would enter its N', or
 //! candidates x and y of the two have `|x - y| < λ2 max(ρ_x, ρ_y)`, so that one would discard the other.
 //!
-//! Both happen only within `max(λ1 r, |x - p| + λ2 ρ_x)` of a point p with candidates x: the corners of all candidates there
-//! count as being in conflict with p. That is more than needed (docs/algorithm.md says how much), and needs no look at pairs of candidates.
+//! Both happen only within `max(λ1 r, |x - p| + λ2 ρ_x)` of a point p with candidates x: the corners of all candidates
+//! there count as being in conflict with p. That is more than needed (docs/algorithm.md says how much), and needs no
+//! look at pairs of candidates.
 
 use crate::candidates::Candidates;
 use crate::coloring::scramble;
@@ -218,8 +220,8 @@ struct Reach {
 }
 
 impl Reach {
-    /// Within which distance a candidate with that discard sphere is of interest: others can neither enter N' nor discard what
-    /// might.
+    /// Within which distance a candidate with that discard sphere is of interest: others can neither enter
+    /// N' nor discard what might.
     #[inline(always)]
     fn of_candidate(&self, sphere: f32) -> f32 {
         self.largest.min(COVER * SLACK * self.near.max(self.own + sphere))
@@ -246,7 +248,8 @@ impl Reach {
     }
 }
 
-/// Both ends of a conflict see it only where their reaches are alike: adds those that the one who chooses before found alone.
+/// Both ends of a conflict see it only where their reaches are alike: adds those that the one who
+/// chooses before found alone.
 fn with_others(before: &Lists, after: &Lists) -> Result<Lists, TooLong> {
     let alone = Lists::make(before.len(), |p, alone| {
         for &q in after.of(p) {

@@ -8,7 +8,8 @@ use surfine_features::Record;
 /// A fan triangle needs a gap below π(1 - 1e-4) radians: at π the fan has no triangle there.
 pub const WIDEST_GAP: f32 = surfine_features::STRAIGHT;
 
-/// A triangle between a point and both its neighbours on a curve has a gap of no more than 150°, but at corners, radians.
+/// A triangle between a point and both its neighbours on a curve has a gap of no more than
+/// 150°, but at corners, radians.
 pub const WIDEST_SHEET: f32 = 2.617_994;
 
 /// The corners of a fan triangle, smallest index first and orientation kept, so that the copies of one triangle in
@@ -32,7 +33,8 @@ pub fn fan_triangle(level: &Level, rings: &Rings, p: usize, i: usize) -> Option<
     Some(canonical([p as u32, a.id, b.id]))
 }
 
-/// Whether a triangle lies between a curve's point and both its neighbours there, almost in a line: a sheet does not end so.
+/// Whether a triangle lies between a curve's point and both its neighbours there, almost in a
+/// line: a sheet does not end so.
 fn spans_sheet(level: &Level, record: &Record, a: u32, b: u32, gap: f32) -> bool {
     let is_partner = |id: u32, k: usize| {
         let partner = record.partners[k];

@@ -8,9 +8,9 @@ use glam::Vec3;
 pub const WORST_BADNESS: f32 = 1.001;
 
 vectorized! {
-    /// The largest signed squares of `sin α_ij` for every member `i`, over successors and predecessors. They order like the sines
-    /// and need no root per pair. The vectors whose fuzzy planes are tested are (x, y), `q'_i - p`, for the accurate neighbourhood, and
-    /// (x, y, height), `p_i - p`, for the fuzzy one.
+    /// The largest signed squares of `sin α_ij` for every member `i`, over successors and predecessors. They order like
+    /// the sines and need no root per pair. The vectors whose fuzzy planes are tested are (x, y), `q'_i - p`, for the
+    /// accurate neighbourhood, and (x, y, height), `p_i - p`, for the fuzzy one.
     pub(crate) fn worst_sines[const FUZZY: bool] [FUZZY](
         x: &[f32],
         y: &[f32],

@@ -40,8 +40,8 @@ pub enum Order {
 /// What the insertion decided.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Insertion {
-    /// One more than the class that inserted each candidate; 0 for the new points on curves, which come before the first class,
-    /// and [`FREE`] for what was not inserted. A selection among all candidates has one class.
+    /// One more than the class that inserted each candidate; 0 for the new points on curves, which come before the
+    /// first class, and [`FREE`] for what was not inserted. A selection among all candidates has one class.
     pub states: Vec<u32>,
     /// Radius of each inserted candidate as a point of the next level.
     pub candidate_radii: Vec<f32>,
@@ -74,7 +74,8 @@ pub struct Stage<'a> {
     pub params: &'a RefineParams,
 }
 
-/// What the points of a class write. Nobody else of the class reads it, and maxima have no order: so the threads need none.
+/// What the points of a class write. Nobody else of the class reads it, and maxima have no order:
+/// so the threads need none.
 pub(crate) struct Shared {
     samples: Vec<Sample>,
     pub(crate) states: Vec<AtomicU32>,

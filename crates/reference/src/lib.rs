@@ -46,8 +46,8 @@ use visible::{Curves, Seen};
 /// No point: the largest index.
 pub const NO_POINT: u32 = u32::MAX;
 
-/// The points of one level, `P^l`: what a refinement step reads and appends to. A point on a crease is one record for each
-/// of its sides.
+/// The points of one level, `P^l`: what a refinement step reads and appends to. A point on a crease is one
+/// record for each of its sides.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Level {
     /// Positions.
@@ -140,7 +140,8 @@ impl Level {
         Seen { position: self.positions[p], normal: self.normals[p], record }
     }
 
-    /// Two unit vectors that span the tangent plane of a point: those of its record, if it lies on a crease or boundary.
+    /// Two unit vectors that span the tangent plane of a point: those of its record, if it
+    /// lies on a crease or boundary.
     pub fn frame(&self, p: usize) -> (Vec3, Vec3) {
         self.record(p).map_or_else(|| math::tangent_frame(self.normals[p]), Record::frame)
     }

@@ -41,8 +41,8 @@ impl<T: Copy + Default + Send + Sync> Lists<T> {
         Ok(lists)
     }
 
-    /// Makes some lists for each point, those of many points at once: `make` appends and ends them. `scratch` makes what a thread
-    /// keeps from one call to the next.
+    /// Makes some lists for each point, those of many points at once: `make` appends and ends them. `scratch` makes
+    /// what a thread keeps from one call to the next.
     pub(crate) fn in_chunks<const N: usize, S>(
         points: usize,
         scratch: impl Fn() -> S + Sync,
@@ -133,13 +133,14 @@ impl<T> Lists<T> {
     }
 }
 
-/// So many entries of the same value, written by all cores: they will fill them, and fresh memory costs more than to write to it.
+/// So many entries of the same value, written by all cores: they will fill them, and fresh memory costs
+/// more than to write to it.
 pub(crate) fn filled<T: Copy + Send + Sync>(value: T, len: usize) -> Vec<T> {
     (0..len).into_par_iter().with_min_len(1 << 14).map(|_| value).collect()
 }
 
-/// Appends an entry if it is wanted. It is written in any case: where about half of the entries are wanted, a branch would be
-/// guessed wrong often.
+/// Appends an entry if it is wanted. It is written in any case: where about half of the entries are wanted, a branch
+/// would be guessed wrong often.
 #[inline(always)]
 pub(crate) fn offer<T: Copy>(list: &mut Vec<T>, entry: T, is_wanted: bool) {
     let len = list.len() + usize::from(is_wanted);
@@ -147,8 +148,8 @@ pub(crate) fn offer<T: Copy>(list: &mut Vec<T>, entry: T, is_wanted: bool) {
     list.truncate(len);
 }
 
-/// The entries that fit, in a buffer that keeps its memory. It writes all and counts those that fit: where about half of them do, a
-/// branch would be guessed wrong often.
+/// The entries that fit, in a buffer that keeps its memory. It writes all and counts those that fit: where about half
+/// of them do, a branch would be guessed wrong often.
 pub(crate) fn choose<'a>(
     list: &[u32],
     fits: impl Fn(u32) -> bool,

@@ -20,7 +20,8 @@ pub(crate) fn has_open_gap(ring: &[RingEntry]) -> bool {
     wraps || (1..ring.len()).any(|i| angle(i) - angle(i - 1) >= open)
 }
 
-/// Appends the members that come back. The others are asked about while these are not there yet: `back` holds them until then.
+/// Appends the members that come back. The others are asked about while these are not there yet:
+/// `back` holds them until then.
 pub(crate) fn take_back(ball: Ball<'_>, kept: &mut RingOrder, back: &mut Vec<usize>) {
     let comes_back = |i: &usize| {
         let may = ball.verdicts[*i] != OUT && !ball.is_neighbor(*i);
@@ -34,7 +35,8 @@ pub(crate) fn take_back(ball: Ball<'_>, kept: &mut RingOrder, back: &mut Vec<usi
     back.iter().for_each(|&i| kept.offer(i as u32, ball.angle[i], ball.ids[i], true));
 }
 
-/// Whether [`is_in_open_gap`] has to be asked: most members are far from open gaps, which their angles tell at less cost.
+/// Whether [`is_in_open_gap`] has to be asked: most members are far from open gaps, which their
+/// angles tell at less cost.
 fn may_be_in_open_gap(ball: Ball<'_>, kept: &[u32], i: usize) -> bool {
     let (mut after, mut before) = (TAU, TAU);
     for &j in kept {

@@ -1,5 +1,5 @@
-//! What lies near points, in columns. Points that follow each other are near each other as a rule, so one look into the grid
-//! serves many of them, and their distances are taken in vector registers.
+//! What lies near points, in columns. Points that follow each other are near each other as a rule, so one look into the
+//! grid serves many of them, and their distances are taken in vector registers.
 
 use crate::columns::{LANES, vectorized};
 use glam::Vec3;
@@ -23,8 +23,8 @@ pub(crate) struct Nearby {
 }
 
 impl Nearby {
-    /// Makes sure that all entries in the ball of the first of some points are there, and takes along what is near those that
-    /// follow. Returns whether the entries are others than before.
+    /// Makes sure that all entries in the ball of the first of some points are there, and takes along what is near
+    /// those that follow. Returns whether the entries are others than before.
     pub(crate) fn look(
         &mut self,
         grid: &Grid,

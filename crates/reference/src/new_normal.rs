@@ -59,9 +59,9 @@ pub const STEP_BLEND: f32 = 5.0;
 
 /// The mean of two normals, reflected across the plane that halves their edge; zero where they cancel.
 ///
-/// Normals that both lean the same way along the edge make a step, and the reflection turns by as much to the other way.
-/// That is right for a slope of one sheet; where two sheets were joined for want of samples it makes normals that fit
-/// neither. So the steeper the step, the less is reflected.
+/// Normals that both lean the same way along the edge make a step, and the reflection turns by as much to the other
+/// way. That is right for a slope of one sheet; where two sheets were joined for want of samples it makes normals that
+/// fit neither. So the steeper the step, the less is reflected.
 #[inline(always)]
 fn edge_normal(a: Corner, b: Corner, size: f32, rules: Rules) -> Vec3 {
     let sum = a.normal + b.normal;

@@ -101,8 +101,8 @@ impl NewRing {
         }
     }
 
-    /// Tries one candidate: that which splits the widest gap, until none is as wide as `θ_c` or none is left. Returns it if it was
-    /// inserted.
+    /// Tries one candidate: that which splits the widest gap, until none is as wide as `θ_c` or none is left.
+    /// Returns it if it was inserted.
     pub(crate) fn step(&mut self, stage: Stage<'_>, gaps: &mut Angles) -> Option<u32> {
         self.gaps.clear();
         let Some(chosen) = self.choose(stage.params.theta_c) else {

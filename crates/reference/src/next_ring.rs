@@ -1,9 +1,9 @@
 //! Radii that cover the next level's rings (ours). Twins: `shaders/next_ring.wgsl` and `shaders/shared/ahead.wgsl`.
 //!
-//! The paper's new radius covers the new neighbours N' alone. On irregular samples the ring of a point at the next level
-//! also has old points in it, and triangles that N' does not know. So the ring is looked up ahead: the members of the
-//! old ring and of N' (by the paper's loop all new points nearby) go through the filter of section 4, and what is left must be within the radii, of
-//! the point and of the members alike.
+//! The paper's new radius covers the new neighbours N' alone. On irregular samples the ring of a point at the next
+//! level also has old points in it, and triangles that N' does not know. So the ring is looked up ahead: the members of
+//! the old ring and of N' (by the paper's loop all new points nearby) go through the filter of section 4, and what is
+//! left must be within the radii, of the point and of the members alike.
 
 use crate::ball::Members;
 use crate::insertion::{COVER, Insertion, Stage, raise};
@@ -90,7 +90,8 @@ fn cover_rings(
     }
 }
 
-/// The members of the old ring, and those of the list around the point that are inserted and within the new radius: of N', all.
+/// The members of the old ring, and those of the list around the point that are inserted and within
+/// the new radius: of N', all.
 fn gather(stage: Stage<'_>, insertion: &Insertion, p: usize, scratch: &mut Scratch) {
     let Stage { level, rings, candidates, conflicts, .. } = stage;
     let center = Center::of(level, p);
@@ -128,8 +129,8 @@ fn keep_ring(scratch: &mut Scratch, rank: usize, fuzzy: bool, sin_theta_f: f32) 
     }
 }
 
-/// The point covers the members, they cover it and, over gaps below π, each other: raises the squares of what they cover.
-/// `on_curve` says that the sheet ends at the centre.
+/// The point covers the members, they cover it and, over gaps below π, each other: raises the squares of what they
+/// cover. `on_curve` says that the sheet ends at the centre.
 fn cover_ring(ring: &mut [Member], on_curve: bool, p: usize, squares: &[AtomicU32]) {
     let farthest = ring.iter().map(|member| member.squared).fold(0.0, f32::max);
     raise(&squares[p], farthest);

@@ -1,5 +1,6 @@
-//! Pairs of points: the centres of neighbourhoods with their members, many side by side, and eq. 6, which says whether they see
-//! each other. Twin: `shaders/shared/ball.wgsl`.
+//! Pairs of points: the centres of neighbourhoods with their members, many side by side, and eq. 6, which says
+//! whether they see each other.
+//! Twin: `shaders/shared/ball.wgsl`.
 
 use crate::Level;
 use crate::columns::{BLOCK, Column, vectorized};
@@ -140,8 +141,8 @@ vectorized! {
     }
 }
 
-/// Eq. 6, printed inverted: whether neither point lies in the cone of apex the other and axis `n0 + n1`. `u` is the unit
-/// vector between them.
+/// Eq. 6, printed inverted: whether neither point lies in the cone of apex the other and axis `n0 + n1`. `u` is the
+/// unit vector between them.
 #[inline(always)]
 fn consistent(u: Vec3, n0: Vec3, n1: Vec3, rules: Rules) -> bool {
     let cosine = n0.dot(n1);

@@ -1,12 +1,12 @@
 //! The selection of new points among all candidates, the largest first (ours). Twins: `shaders/selection*.wgsl`.
 //!
-//! Section 5 selects new points around one point after the other, gap by gap, and what comes out depends on the order of the
-//! points. Here the candidates have an order of their own: the larger one comes first. Each is inserted unless it lies in the
-//! discard sphere (eq. 11) of one that was inserted before it; that one then stands for it in the fans, as in step 3 of
-//! section 5. Candidates overlap rarely, so almost all of them are decided at once.
+//! Section 5 selects new points around one point after the other, gap by gap, and what comes out depends on the order
+//! of the points. Here the candidates have an order of their own: the larger one comes first. Each is inserted unless
+//! it lies in the discard sphere (eq. 11) of one that was inserted before it; that one then stands for it in the fans,
+//! as in step 3 of section 5. Candidates overlap rarely, so almost all of them are decided at once.
 //!
-//! The size of a candidate ([`Candidates::sizes`]) takes the place of `ρ` in eq. 11. N' of a point is what stands for the
-//! candidates of its fan.
+//! The size of a candidate ([`Candidates::sizes`]) takes the place of `ρ` in eq. 11. N' of a point is what stands for
+//! the candidates of its fan.
 
 use crate::candidates::Candidates;
 use crate::coloring::scramble;
@@ -96,19 +96,21 @@ pub(crate) fn holds(candidates: &Candidates, params: &RefineParams, h: usize, x:
         && same_side(params.rules, candidates.normals[h], candidates.normals[x])
 }
 
-/// Whether a candidate is decided before another one. Points on curves are inserted before all others, whatever their place.
+/// Whether a candidate is decided before another one. Points on curves are inserted before all
+/// others, whatever their place.
 pub(crate) fn precedes(candidates: &Candidates, a: usize, b: usize) -> bool {
     let on_curve = |c: usize| c >= candidates.first_on_curve;
     !on_curve(b) && (on_curve(a) || rank(candidates, a) > rank(candidates, b))
 }
 
-/// The rank of a candidate of a triangle: its size (positive floats are ordered as their bits are), ties by hashed index.
+/// The rank of a candidate of a triangle: its size (positive floats are ordered as their bits
+/// are), ties by hashed index.
 fn rank(candidates: &Candidates, c: usize) -> (u32, u32) {
     (candidates.sizes[c].to_bits(), scramble(c as u32))
 }
 
-/// Selects the new points, and gives all points their radii. Returns the new neighbourhoods too, each with its members once; they
-/// are empty where [`crate::next_ring`] does not ask for them.
+/// Selects the new points, and gives all points their radii. Returns the new neighbourhoods too, each with its members
+/// once; they are empty where [`crate::next_ring`] does not ask for them.
 ///
 /// # Errors
 /// Too long lists.
@@ -192,8 +194,8 @@ fn select(candidates: &Candidates, overlaps: &Lists) -> Vec<u32> {
     states
 }
 
-/// Who stands for a candidate in the fans: itself if it was inserted, else the closest of those that discard it; ties go by
-/// index.
+/// Who stands for a candidate in the fans: itself if it was inserted, else the closest of those that
+/// discard it; ties go by index.
 fn stand_in(candidates: &Candidates, overlaps: &[u32], states: &[u32], c: usize) -> u32 {
     if states[c] != FREE {
         return c as u32;
@@ -209,8 +211,8 @@ fn stand_in(candidates: &Candidates, overlaps: &[u32], states: &[u32], c: usize)
     closest.1
 }
 
-/// New radii around a point (section 5, end): the members of N', in the order of the fan, cover the point and their neighbours in
-/// N'. Raises the squares of what they cover, and returns that of what covers N', 0 if N' is empty.
+/// New radii around a point (section 5, end): the members of N', in the order of the fan, cover the point and their
+/// neighbours in N'. Raises the squares of what they cover, and returns that of what covers N', 0 if N' is empty.
 fn cover_fan(center: Vec3, fan: &[Member], squares: &[AtomicU32]) -> f32 {
     let Some(last) = fan.last() else { return 0.0 };
     let mut farthest = 0.0f32;

@@ -29,7 +29,8 @@ impl RingOrder {
         }
     }
 
-    /// Adds a member if it is wanted; there must be room. It is written in any case: a branch would be guessed wrong often.
+    /// Adds a member if it is wanted; there must be room. It is written in any case: a branch
+    /// would be guessed wrong often.
     #[inline(always)]
     pub(crate) fn offer(&mut self, member: u32, angle: f32, id: u32, is_wanted: bool) {
         self.members[self.len] = member;
@@ -42,8 +43,8 @@ impl RingOrder {
         &self.members[..self.len]
     }
 
-    /// The members, each with its rank among all. To count what comes before each takes as many comparisons as there are pairs,
-    /// but they are made in vector registers, and none has to be guessed.
+    /// The members, each with its rank among all. To count what comes before each takes as many comparisons as there
+    /// are pairs, but they are made in vector registers, and none has to be guessed.
     pub(crate) fn sorted(&mut self) -> impl ExactSizeIterator<Item = (usize, usize)> {
         find_ranks(&self.keys[..self.len.next_multiple_of(LANES)], self.len, &mut self.ranks);
         let members = &self.members[..self.len];

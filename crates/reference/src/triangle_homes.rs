@@ -1,4 +1,5 @@
-//! To which slot each triangle belongs, that it is one candidate though three fans have it, and the numbers of the triangles.
+//! To which slot each triangle belongs, that it is one candidate though three fans have it, and the
+//! numbers of the triangles.
 //! Twins: `shaders/candidates_home.wgsl`, `candidates_number.wgsl` and `candidates_link.wgsl`.
 
 use crate::fan_triangle::fan_triangle;
@@ -7,8 +8,8 @@ use crate::{Level, NO_POINT};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// The triangle of each slot, [`NO_POINT`] for slots without one, and the corners of all triangles: they are numbered by the
-/// slots to which they belong.
+/// The triangle of each slot, [`NO_POINT`] for slots without one, and the corners of all triangles: they are numbered
+/// by the slots to which they belong.
 pub(crate) fn number(level: &Level, rings: &Rings) -> (Vec<u32>, Vec<[u32; 3]>) {
     let (mut homes, mut numbers) = (vec![0; rings.len()], vec![0; rings.len()]);
     let mut parts = Part::all(rings, &mut homes, &mut numbers);
@@ -95,7 +96,8 @@ impl<'a> Part<'a> {
     }
 }
 
-/// Finds the triangles of a fan. They belong to their own slots but for those that it returns: their first corner is another one.
+/// Finds the triangles of a fan. They belong to their own slots but for those that it returns: their
+/// first corner is another one.
 #[inline]
 fn find_fan<'a>(
     level: &Level,
@@ -117,7 +119,8 @@ fn find_fan<'a>(
     &elsewhere[..count]
 }
 
-/// The slot of a triangle in the fan of the first of its corners that has it, if that comes before `p`, whose fan has it.
+/// The slot of a triangle in the fan of the first of its corners that has it, if that comes
+/// before `p`, whose fan has it.
 #[inline]
 fn home(level: &Level, rings: &Rings, [a, b, c]: [u32; 3], p: usize) -> Option<u32> {
     let of_first = || slot_between(level, rings, a, b, c);
@@ -139,8 +142,8 @@ fn slot_between(level: &Level, rings: &Rings, p: u32, from: u32, to: u32) -> Opt
 /// Entries of a ring that are compared in any case, and in which most rings fit.
 const WINDOW: usize = 8;
 
-/// The place of a point in a ring. As many entries are compared for each ring, with those that follow it if it has fewer: where
-/// a search ends would be guessed wrong often.
+/// The place of a point in a ring. As many entries are compared for each ring, with those that follow it if it has
+/// fewer: where a search ends would be guessed wrong often.
 #[inline]
 fn place_of(rings: &Rings, slots: Range<usize>, id: u32) -> Option<usize> {
     let entries = &rings.lists.items[slots.start..];

@@ -72,7 +72,8 @@ vectorized! {
     }
 }
 
-/// Position, normal and ρ of a new point (section 5). The third is -1 where a triangle has none: if it has no area, or is steep.
+/// Position, normal and ρ of a new point (section 5). The third is -1 where a triangle has none: if it
+/// has no area, or is steep.
 type NewPoint = (Vec3, Vec3, f32);
 
 /// The new point of a triangle.

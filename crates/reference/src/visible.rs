@@ -1,10 +1,10 @@
 //! What a point sees when there are creases and boundaries (section 6). Twins: `visible.wgsl`, `segments.wgsl` and
 //! `same_side.wgsl` in `shaders/shared`.
 //!
-//! The paper splits a crease point's neighbourhood by the most similar normal. That is not enough: eq. 6 never rejects a
-//! pair across an edge of 90°, so fans would cross the crease. Here points see each other only if they lie on one sheet
-//! as far as the curves nearby can tell. It filters `N^E` and who discards whom, by the
-//! paper's loop N' and Y; no step averages across a crease.
+//! The paper splits a crease point's neighbourhood by the most similar normal. That is not enough: eq. 6 never rejects
+//! a pair across an edge of 90°, so fans would cross the crease. Here points see each other only if they lie on one
+//! sheet as far as the curves nearby can tell. It filters `N^E` and who discards whom, by the paper's loop N' and Y; no
+//! step averages across a crease.
 
 mod fences;
 
@@ -66,8 +66,8 @@ impl Curves {
         &self.features.records[index as usize]
     }
 
-    /// The side of a crease point on which another point lies, if any; for a boundary point itself, if the other one lies
-    /// in its fan.
+    /// The side of a crease point on which another point lies, if any; for a boundary point itself, if the
+    /// other one lies in its fan.
     fn side(&self, of: u32, other: Seen, rules: Rules) -> u32 {
         let d = other.position - self.record(of).position;
         let d2 = d.dot(d);
@@ -143,7 +143,8 @@ pub(crate) struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    /// The view of a point, old or new, as far as the radius; `None` where there are no curves, and every point sees all others.
+    /// The view of a point, old or new, as far as the radius; `None` where there are no curves, and
+    /// every point sees all others.
     pub(crate) fn new(level: &'a Level, center: Seen, radius: f32, rules: Rules) -> Option<Self> {
         let curves = level.curves.as_ref()?;
         let fences = curves.fences(center.position, radius, rules);

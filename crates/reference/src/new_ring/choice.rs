@@ -36,8 +36,8 @@ impl NewRing {
         best.map(|(i, _)| i)
     }
 
-    /// The candidate strictly inside gap `i` whose smaller angle to the two ends is the largest: angles are compared by their
-    /// cosines.
+    /// The candidate strictly inside gap `i` whose smaller angle to the two ends is the largest: angles are
+    /// compared by their cosines.
     fn best_split(&self, i: usize) -> Option<usize> {
         let (from, to) = (&self.ring[i], &self.ring[self.next(i)]);
         let wraps = i + 1 == self.ring.len();

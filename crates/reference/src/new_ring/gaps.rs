@@ -7,8 +7,8 @@ use crate::math::{PI, TAU};
 use crate::pn_triangle::Corner;
 
 impl NewRing {
-    /// Directed angle on the tangent plane from member `i` to the next one, in [0, 2π]. A sheet that ends at the centre has
-    /// no next one after the last.
+    /// Directed angle on the tangent plane from member `i` to the next one, in [0, 2π]. A sheet that ends at the centre
+    /// has no next one after the last.
     pub(super) fn directed_gap(&self, i: usize) -> f32 {
         if self.on_curve && i + 1 == self.ring.len() {
             TAU

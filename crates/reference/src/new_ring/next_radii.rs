@@ -6,8 +6,8 @@ use crate::math::PI;
 use std::sync::atomic::Ordering::Relaxed;
 
 impl NewRing {
-    /// New radii. That of the centre covers N', and stays where there are no new neighbours. The members of N' cover the centre
-    /// and their two neighbours in N'.
+    /// New radii. That of the centre covers N', and stays where there are no new neighbours. The members of N' cover
+    /// the centre and their two neighbours in N'.
     pub(crate) fn store_radii(&mut self, stage: Stage<'_>, shared: &Shared) {
         let candidates = stage.candidates.len();
         let is_bound = |member: &Member| member.id as usize >= candidates;

@@ -6,8 +6,8 @@ use glam::Vec3;
 use surfine_features::NONE;
 use surfine_points::Rules;
 
-/// Segments can separate two points if their middle is within this share of the points' distance, and half of the longest
-/// segment, from the middle of the points.
+/// Segments can separate two points if their middle is within this share of the points' distance, and half of the
+/// longest segment, from the middle of the points.
 pub const FENCE_REACH: f32 = 0.75;
 
 impl Curves {
@@ -21,8 +21,8 @@ impl Curves {
         fences
     }
 
-    /// Whether a crease segment runs between two points: they lie on different sides of it at an end, and the shortest way
-    /// between them over the unfolded sides crosses it.
+    /// Whether a crease segment runs between two points: they lie on different sides of it at an end, and the shortest
+    /// way between them over the unfolded sides crosses it.
     fn separates(&self, segment: u32, a: Seen, b: Seen, rules: Rules) -> bool {
         let sides = self.features.segments[segment as usize].sides;
         let ends = sides[0].map(|r| self.record(r));
