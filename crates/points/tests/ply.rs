@@ -405,18 +405,31 @@ fn empty_sets_crlf_and_odd_comments_are_fine() {
     assert_eq!(source.remarks().last().unwrap(), "comment refined end_header");
 }
 
-/// Files that must be refused, with words that the message must have.
-fn hostile() -> Vec<(&'static str, Vec<u8>, &'static str)> {
-    let head = |header: &str| format!("ply\nformat ascii 1.0\n{header}end_header\n").into_bytes();
-    let vertex =
-        |count: &str, properties: &str| head(&format!("element vertex {count}\n{properties}"));
-    let core = |count: &str| format!("element vertex {count}\n{CORE}");
-    let faces = |kind: &str, count: &str| {
-        format!("{}element face {count}\nproperty list {kind} int vertex_indices\n", core("1"))
-    };
-    let with_bytes = |tail: &[u8]| [row_bytes(), tail.to_vec()].concat();
-    let list = |count: &[u8]| [count, &[0; 8][..]].concat();
-    let tags = CORE.replacen("property", "property list uint double tags\nproperty", 1);
+/// A file that must be refused: what is wrong with it, its bytes, and words that the message must have.
+type Hostile = (&'static str, Vec<u8>, &'static str);
+
+fn hostile() -> Vec<Hostile> {
+    let headers = [malformed_headers(), incomplete_headers(), endless_lines()];
+    let bodies = [wrong_counts(), bad_values(), bad_lists()];
+    headers.into_iter().chain(bodies).flatten().collect()
+}
+
+fn head(header: &str) -> Vec<u8> {
+    format!("ply\nformat ascii 1.0\n{header}end_header\n").into()
+}
+
+/// The element of points with the usual properties.
+fn core(count: &str) -> String {
+    format!("element vertex {count}\n{CORE}")
+}
+
+/// One binary point and more.
+fn with_bytes(tail: &[u8]) -> Vec<u8> {
+    [row_bytes(), tail.to_vec()].concat()
+}
+
+/// Headers that are none.
+fn malformed_headers() -> Vec<Hostile> {
     vec![
         ("empty", vec![], "line 1: the file is empty"),
         ("no PLY", b"solid cube\n".to_vec(), "line 1: the file does not begin"),
@@ -436,7 +449,58 @@ fn hostile() -> Vec<(&'static str, Vec<u8>, &'static str)> {
         ("unknown version", ascii("1", ROW).replace("1.0", "2.0").into(), "`ascii 2.0`"),
         ("cut header", ascii("1", "")[..60].into(), "ends before `end_header`"),
         ("cut end_header", ascii("0", "").trim_end().into(), "ends before `end_header`"),
-        ("4e9 points of nothing", vertex("4000000000", ""), "no properties"),
+        (
+            "two x",
+            ascii("1", ROW).replace("float y", "double x").into(),
+            "line 5: a second property `x`",
+        ),
+        ("two vertex", head(&core("0").repeat(2)), "a second element `vertex`"),
+        ("early property", head("property float x\n"), "before any element"),
+        (
+            "unknown type",
+            ascii("1", ROW).replace("float y", "half y").into(),
+            "line 5: type `half`",
+        ),
+        ("unknown word", head("elephant vertex 3\n"), "line 3: `elephant` is not understood"),
+        ("float list", head("element vertex 1\nproperty list float int x\n"), "integer type"),
+        (
+            "header not UTF-8",
+            b"ply\nelement \xff\xfe 1\n".to_vec(),
+            "line 2: the line is not UTF-8",
+        ),
+        ("control characters", b"ply\nelement \x1b[31m 1\n".to_vec(), "\\u{1b}[31m"),
+    ]
+}
+
+/// Headers that lack what every file must have.
+fn incomplete_headers() -> Vec<Hostile> {
+    vec![
+        ("no points", head(""), "no element `vertex`"),
+        ("no properties", head("element vertex 1\n"), "no properties"),
+        ("4e9 points of nothing", head("element vertex 4000000000\n"), "no properties"),
+        (
+            "no normals",
+            head(
+                "element vertex 0\nproperty float x\nproperty float y\nproperty float z\nproperty float radius\n",
+            ),
+            "no `nx`, `ny`, `nz`: add normals nx ny nz, unit length, outward",
+        ),
+        (
+            "no radius",
+            ascii("1", ROW).replace("radius", "r").into(),
+            "no `radius`: add a property `radius`, at least the distance to the farthest natural neighbour, about 1.25 times it",
+        ),
+        (
+            "list for x",
+            ascii("1", ROW).replace("float x", "list uchar float x").into(),
+            "no `x` that is no list",
+        ),
+    ]
+}
+
+/// Counts that are none, or that the file does not keep.
+fn wrong_counts() -> Vec<Hostile> {
+    vec![
         ("1e23 points", ascii("1e23", ROW).into(), "line 3: `1e23` is no count"),
         ("1e23 in digits", ascii("100000000000000000000000", ROW).into(), "is no count"),
         ("2^64 - 1 points", ascii("18446744073709551615", ROW).into(), "file ends after 1 ("),
@@ -445,18 +509,6 @@ fn hostile() -> Vec<(&'static str, Vec<u8>, &'static str)> {
             "2^64 - 1 binary points",
             binary(&core("18446744073709551615"), &row_bytes()),
             "ends after 1 (",
-        ),
-        ("no properties", vertex("1", ""), "no properties"),
-        ("endless first line", [b"ply".to_vec(), vec![b'x'; 50 << 20]].concat(), "line 1"),
-        (
-            "endless line",
-            [b"ply\ncomment ".to_vec(), vec![b'x'; 50 << 20]].concat(),
-            "line 2: the line is longer",
-        ),
-        (
-            "millions of lines",
-            [b"ply\n".to_vec(), b"comment\n".repeat(3 << 20)].concat(),
-            "the header is longer",
         ),
         (
             "cut binary body",
@@ -482,6 +534,34 @@ fn hostile() -> Vec<(&'static str, Vec<u8>, &'static str)> {
         ),
         ("trailing binary", binary(&core("1"), &with_bytes(b"more")), "4 bytes follow"),
         ("trailing ASCII", ascii("1", &ROW.repeat(2)).into(), "16 bytes follow"),
+    ]
+}
+
+/// Lines without an end, and too many of them.
+fn endless_lines() -> Vec<Hostile> {
+    vec![
+        ("endless first line", [b"ply".to_vec(), vec![b'x'; 50 << 20]].concat(), "line 1"),
+        (
+            "endless line",
+            [b"ply\ncomment ".to_vec(), vec![b'x'; 50 << 20]].concat(),
+            "line 2: the line is longer",
+        ),
+        (
+            "millions of lines",
+            [b"ply\n".to_vec(), b"comment\n".repeat(3 << 20)].concat(),
+            "the header is longer",
+        ),
+        (
+            "huge line",
+            [ascii("1", "").into_bytes(), vec![b'1'; 1 << 20]].concat(),
+            "line 12 is too long",
+        ),
+    ]
+}
+
+/// Values that are no numbers, or none for a point.
+fn bad_values() -> Vec<Hostile> {
+    vec![
         (
             "word",
             ascii("1", "1 2 three 0 0 1 0.5\n").into(),
@@ -502,49 +582,17 @@ fn hostile() -> Vec<(&'static str, Vec<u8>, &'static str)> {
             "vertex 1: the radius is",
         ),
         ("not text", [ascii("1", "").into_bytes(), vec![0xff; 40]].concat(), "line 12 is not text"),
-        (
-            "huge line",
-            [ascii("1", "").into_bytes(), vec![b'1'; 1 << 20]].concat(),
-            "line 12 is too long",
-        ),
-        (
-            "two x",
-            ascii("1", ROW).replace("float y", "double x").into(),
-            "line 5: a second property `x`",
-        ),
-        ("two vertex", head(&core("0").repeat(2)), "a second element `vertex`"),
-        ("early property", head("property float x\n"), "before any element"),
-        (
-            "unknown type",
-            ascii("1", ROW).replace("float y", "half y").into(),
-            "line 5: type `half`",
-        ),
-        ("unknown word", head("elephant vertex 3\n"), "line 3: `elephant` is not understood"),
-        ("float list", head("element vertex 1\nproperty list float int x\n"), "integer type"),
-        (
-            "header not UTF-8",
-            b"ply\nelement \xff\xfe 1\n".to_vec(),
-            "line 2: the line is not UTF-8",
-        ),
-        ("control characters", b"ply\nelement \x1b[31m 1\n".to_vec(), "\\u{1b}[31m"),
-        ("no points", head(""), "no element `vertex`"),
-        (
-            "no normals",
-            head(
-                "element vertex 0\nproperty float x\nproperty float y\nproperty float z\nproperty float radius\n",
-            ),
-            "no `nx`, `ny`, `nz`: add normals nx ny nz, unit length, outward",
-        ),
-        (
-            "no radius",
-            ascii("1", ROW).replace("radius", "r").into(),
-            "no `radius`: add a property `radius`, at least the distance to the farthest natural neighbour, about 1.25 times it",
-        ),
-        (
-            "list for x",
-            ascii("1", ROW).replace("float x", "list uchar float x").into(),
-            "no `x` that is no list",
-        ),
+    ]
+}
+
+/// Lists that promise more than there is.
+fn bad_lists() -> Vec<Hostile> {
+    let faces = |kind: &str, count: &str| {
+        format!("{}element face {count}\nproperty list {kind} int vertex_indices\n", core("1"))
+    };
+    let list = |count: &[u8]| [count, &[0; 8][..]].concat();
+    let tags = CORE.replacen("property", "property list uint double tags\nproperty", 1);
+    vec![
         (
             "huge face count",
             binary(&faces("uchar", "4000000000"), &row_bytes()),
