@@ -1,7 +1,7 @@
 //! Everything computed a second time, all pairs and all triangles, by other formulas.
 
 use approx::assert_relative_eq;
-use surfine_evaluate::{Options, Spread, Truth, TruthKind, errors, evaluate};
+use surfine_evaluate::{Evaluation, Options, Spread, Truth, TruthKind, errors, evaluate};
 use surfine_points::shapes::{Sampling, Shape};
 use surfine_points::{DVec3, Model, Vec3};
 
@@ -152,34 +152,81 @@ fn rough_pair() -> (Model, Model) {
     (output, truth)
 }
 
-#[test]
-fn measures_against_a_cloud_are_those_of_all_pairs() {
-    let (output, truth) = rough_pair();
-    let found = scenes::measure(&output, &scenes::truth(&truth));
-    let (p, g) = (&output.positions, &truth.positions);
-    let directions = |m: &Model| -> Vec<DVec3> {
-        m.normals.iter().flatten().map(|n| n.as_dvec3().normalize()).collect()
-    };
-    let (ours, theirs) = (directions(&output), directions(&truth));
-    let nearest = |x: DVec3| {
-        (0..g.len()).min_by(|&a, &b| g[a].distance(x).total_cmp(&g[b].distance(x))).unwrap()
-    };
-    let nearest: Vec<usize> = p.iter().map(|&x| nearest(x)).collect();
-    let planes = nearest.iter().zip(p).map(|(&j, &x)| (x - g[j]).dot(theirs[j]).abs());
-    assert_eq!(found.truth.kind, TruthKind::TangentPlanes);
-    assert_spread(found.distance.absolute, planes.collect());
+/// The index of the point that is nearest to `x`.
+fn nearest(x: DVec3, points: &[DVec3]) -> usize {
+    let distance = |i: usize| points[i].distance(x);
+    (0..points.len()).min_by(|&a, &b| distance(a).total_cmp(&distance(b))).unwrap()
+}
 
-    let others: Vec<Vec<usize>> = (0..p.len()).map(|i| others(p, i)).collect();
-    let spacings: Vec<f64> = (0..p.len())
-        .map(|i| others[i][..6].iter().map(|&j| p[i].distance(p[j])).sum::<f64>() / 6.0)
-        .collect();
+/// The rough pair with its neighbours, found among all pairs, and what is measured of it.
+struct Pairs {
+    output: Vec<DVec3>,
+    truth: Vec<DVec3>,
+    output_normals: Vec<DVec3>,
+    truth_normals: Vec<DVec3>,
+    /// For each point of the output the one of the truth that is nearest.
+    nearest: Vec<usize>,
+    /// For each point of the output the other ones, nearest first.
+    others: Vec<Vec<usize>>,
+    found: Evaluation,
+}
+
+impl Pairs {
+    fn new() -> Self {
+        let (output, truth) = rough_pair();
+        let found = scenes::measure(&output, &scenes::truth(&truth));
+        let directions = |m: &Model| -> Vec<DVec3> {
+            m.normals.iter().flatten().map(|n| n.as_dvec3().normalize()).collect()
+        };
+        let (p, g) = (&output.positions, &truth.positions);
+        Self {
+            output_normals: directions(&output),
+            truth_normals: directions(&truth),
+            nearest: p.iter().map(|&x| nearest(x, g)).collect(),
+            others: (0..p.len()).map(|i| others(p, i)).collect(),
+            found,
+            output: output.positions,
+            truth: truth.positions,
+        }
+    }
+
+    /// The distances to the nearest other points of the output.
+    fn to_others(&self, i: usize) -> impl Iterator<Item = f64> {
+        self.others[i].iter().map(move |&j| self.output[i].distance(self.output[j]))
+    }
+
+    /// The angles between the normals of the points of the output and others, degrees.
+    fn turns(&self, normal: impl Fn(usize) -> DVec3, other: impl Fn(usize) -> DVec3) -> Vec<f64> {
+        (0..self.output.len()).map(|i| degrees(normal(i), other(i))).collect()
+    }
+
+    /// The same from the mean of the eight neighbours' normals.
+    fn bends(&self, normal: impl Fn(usize) -> DVec3) -> Vec<f64> {
+        let around = |i: usize| self.others[i][..8].iter().map(|&j| normal(j)).sum();
+        self.turns(&normal, around)
+    }
+}
+
+#[test]
+fn distances_to_the_planes_of_a_cloud_are_those_of_all_pairs() {
+    let Pairs { output, truth, truth_normals, nearest, found, .. } = Pairs::new();
+    let planes = nearest.iter().zip(&output).map(|(&j, &x)| (x - truth[j]).dot(truth_normals[j]));
+    assert_eq!(found.truth.kind, TruthKind::TangentPlanes);
+    assert_spread(found.distance.absolute, planes.map(f64::abs).collect());
+}
+
+#[test]
+fn gaps_and_spacings_are_those_of_all_pairs() {
+    let pairs = Pairs::new();
+    let Pairs { output, truth, found, .. } = &pairs;
+    let spacing = |i: usize| pairs.to_others(i).take(6).sum::<f64>() / 6.0;
+    let spacings: Vec<f64> = (0..output.len()).map(spacing).collect();
     assert_relative_eq!(found.output.spacing, mean(&spacings), max_relative = 1e-9);
     let ratio = |&x: &DVec3| {
-        let i =
-            (0..p.len()).min_by(|&a, &b| p[a].distance(x).total_cmp(&p[b].distance(x))).unwrap();
-        p[i].distance(x) / spacings[i]
+        let i = nearest(x, output);
+        output[i].distance(x) / spacings[i]
     };
-    let mut ratios: Vec<f64> = g.iter().map(ratio).collect();
+    let mut ratios: Vec<f64> = truth.iter().map(ratio).collect();
     ratios.sort_by(f64::total_cmp);
     assert_eq!(found.coverage.samples, 500);
     assert_relative_eq!(found.coverage.max, ratios[499], max_relative = 1e-9);
@@ -188,31 +235,34 @@ fn measures_against_a_cloud_are_those_of_all_pairs() {
     let over_1 = ratios.iter().filter(|&&r| r > 1.0).count();
     assert!(over_1 > 0, "this cloud shows nothing");
     assert_eq!(found.coverage.over_1, over_1 as f64 / 500.0);
+}
 
-    let nearest_other: Vec<f64> = (0..p.len()).map(|i| p[i].distance(p[others[i][0]])).collect();
-    let squares: Vec<f64> = nearest_other.iter().map(|d| d * d).collect();
-    let deviation = (mean(&squares) - mean(&nearest_other).powi(2)).sqrt();
-    assert_relative_eq!(
-        found.uniformity.nn_cv,
-        deviation / mean(&nearest_other),
-        max_relative = 1e-9
-    );
-    assert_eq!(found.uniformity.discs, None);
+#[test]
+fn uniformity_is_that_of_all_pairs() {
+    let pairs = Pairs::new();
+    let distances: Vec<f64> =
+        (0..pairs.output.len()).flat_map(|i| pairs.to_others(i).take(1)).collect();
+    let squares: Vec<f64> = distances.iter().map(|d| d * d).collect();
+    let deviation = (mean(&squares) - mean(&distances).powi(2)).sqrt();
+    let uniformity = pairs.found.uniformity;
+    assert_relative_eq!(uniformity.nn_cv, deviation / mean(&distances), max_relative = 1e-9);
+    assert_eq!(uniformity.discs, None);
+}
 
-    let turns = |n: &dyn Fn(usize) -> DVec3| -> Vec<f64> {
-        let around = |i: usize| others[i][..8].iter().map(|&j| n(j)).sum::<DVec3>();
-        (0..p.len()).map(|i| degrees(n(i), around(i))).collect()
-    };
-    let smoothness = found.smoothness.expect("the output has normals");
-    let output_turns = turns(&|i| ours[i]);
-    assert_relative_eq!(smoothness.output.mean, mean(&output_turns), max_relative = 1e-6);
-    assert_relative_eq!(smoothness.output.max, max(&output_turns), max_relative = 1e-6);
-    let truth_turns = turns(&|i| theirs[nearest[i]]);
-    let of_truth = smoothness.truth.expect("the truth has normals");
-    assert_relative_eq!(of_truth.mean, mean(&truth_turns), max_relative = 1e-6);
+#[test]
+fn normals_are_compared_as_by_all_pairs() {
+    let pairs = Pairs::new();
+    let of_output = |i: usize| pairs.output_normals[i];
+    let of_truth = |i: usize| pairs.truth_normals[pairs.nearest[i]];
+    let smoothness = pairs.found.smoothness.expect("the output has normals");
+    let bends = pairs.bends(of_output);
+    assert_relative_eq!(smoothness.output.mean, mean(&bends), max_relative = 1e-6);
+    assert_relative_eq!(smoothness.output.max, max(&bends), max_relative = 1e-6);
+    let of_its_truth = smoothness.truth.expect("the truth has normals");
+    assert_relative_eq!(of_its_truth.mean, mean(&pairs.bends(of_truth)), max_relative = 1e-6);
 
-    let normals = found.normals.expect("both have normals");
-    let angles: Vec<f64> = (0..p.len()).map(|i| degrees(ours[i], theirs[nearest[i]])).collect();
+    let normals = pairs.found.normals.expect("both have normals");
+    let angles = pairs.turns(of_output, of_truth);
     assert_relative_eq!(normals.all.mean, mean(&angles), max_relative = 1e-6);
     assert_relative_eq!(normals.all.max, max(&angles), max_relative = 1e-6);
     assert_eq!((normals.points, normals.away_from_creases), (300, None));
