@@ -45,8 +45,8 @@ fn random_samples_come_out_more_even_the_largest_first() {
     }
 }
 
-/// The refined torus whose radii are that many times as large: growth, variation of distances and the largest empty disc, in
-/// output spacings.
+/// The refined torus whose radii are that many times as large, its growth, the variation of distances and the largest
+/// empty disc in output spacings.
 fn with_radii(torus: &PointSet, factor: f32, params: &RefineParams) -> (Refined, [f64; 3]) {
     let refined = refine(&with_radii_times(torus.clone(), factor), params);
     let disc = largest_empty_disc(&refined.points, Shape::Torus, 100_000)
