@@ -14,7 +14,7 @@ fn flat(vectors: &[Vec3]) -> Vec<f32> {
 }
 
 /// Everything must be equal, bit for bit.
-pub(crate) fn must_be_identical(name: &str, expected: &Refined, found: &Refined) {
+fn must_be_identical(name: &str, expected: &Refined, found: &Refined) {
     let what = |column: &str| format!("{name}: {column}");
     must(compare_equal(&what("level sizes"), &expected.level_sizes, &found.level_sizes));
     must(compare_equal(&what("parents"), &expected.parents, &found.parents));
@@ -40,7 +40,7 @@ pub(crate) fn must_be_identical(name: &str, expected: &Refined, found: &Refined)
 
 /// On adapters that round otherwise: the first level's new points are those of the same triangles, but for a budget of
 /// flipped decisions, and lie where the reference puts them.
-pub(crate) fn must_be_close(name: &str, expected: &Refined, found: &Refined) {
+fn must_be_close(name: &str, expected: &Refined, found: &Refined) {
     let old = expected.level_sizes[0];
     let (expected_new, found_new) = (expected.level_sizes[1] - old, found.level_sizes[1] - old);
     let place: HashMap<[u32; 3], usize> =
@@ -61,16 +61,27 @@ pub(crate) fn must_be_close(name: &str, expected: &Refined, found: &Refined) {
 }
 
 fn check(device: &mut Device, cloud: &Cloud, params: &RefineParams) {
+    let is_exact = device.is_exact();
+    check_with(&mut device.refiner, is_exact, cloud, params);
+}
+
+/// Returns what the refiner makes of a cloud, which must be what the reference makes of it.
+pub(crate) fn check_with(
+    refiner: &mut Refiner,
+    is_exact: bool,
+    cloud: &Cloud,
+    params: &RefineParams,
+) -> Refined {
     let name = format!("{} {}", cloud.name, describe(params));
     let expected = surfine_reference::refine(&cloud.points, params).expect("the cloud is sound");
-    let found = device.refiner.refine(&cloud.points, params);
-    let found = found.unwrap_or_else(|e| panic!("{}: {e}", cloud.name));
+    let found = refiner.refine(&cloud.points, params).unwrap_or_else(|e| panic!("{name}: {e}"));
     // Without a level nothing is rounded.
-    if device.is_exact() || params.levels == 0 {
+    if is_exact || params.levels == 0 {
         must_be_identical(&name, &expected, &found);
     } else {
         must_be_close(&name, &expected, &found);
     }
+    found
 }
 
 #[test]
@@ -234,14 +245,7 @@ fn buffers_that_turn_out_too_small_grow() {
         [(1, &params), (0, &simplified), (2, &by_gaps), (2, &simplified), (1, &params)]
     {
         let cloud = whole().swap_remove(i).0;
-        let expected =
-            surfine_reference::refine(&cloud.points, params).expect("the cloud is sound");
-        let found = refiner.refine(&cloud.points, params).expect("the device can do it");
-        if device().is_exact() {
-            must_be_identical(&cloud.name, &expected, &found);
-        } else {
-            must_be_close(&cloud.name, &expected, &found);
-        }
+        check_with(&mut refiner, device().is_exact(), &cloud, params);
     }
 }
 
@@ -263,6 +267,30 @@ fn too_many_neighbors_for_the_driver_are_an_error_that_names_a_point() {
         }
         Err(other) => panic!("{other}"),
     }
+}
+
+/// Pipelines that a refiner has compiled so far: its debug output is the only way to see them.
+fn pipelines(refiner: &Refiner) -> usize {
+    format!("{refiner:?}").matches("pipeline: ComputePipeline").count()
+}
+
+#[test]
+fn kernels_for_curves_can_be_compiled_beforehand() {
+    let device = device();
+    let mut refiner = Refiner::with_gpu(device.gpu().clone()).expect("the kernels compile");
+    let params = RefineParams { levels: 2, ..RefineParams::default() };
+    let before = pipelines(&refiner);
+    refiner.prepare_curves(&params).expect("the kernels compile");
+    let prepared = pipelines(&refiner);
+    assert!(prepared > before, "{prepared} pipelines, {before} before");
+    // A cube, and a saddle whose rim is a boundary: each has kernels of its own.
+    for (at, is_creased) in [(0, true), (4, false)] {
+        let (cloud, _) = whole_outlined().swap_remove(at);
+        let curves = check_with(&mut refiner, device.is_exact(), &cloud, &params).curves;
+        let segments = [curves.crease_segments, curves.boundary_segments];
+        assert_eq!(segments.map(|count| count > 0), [is_creased, !is_creased], "{segments:?}");
+    }
+    assert_eq!(pipelines(&refiner), prepared, "kernels were compiled after all");
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! Buffers that are longer than a binding may be: the same bytes through several windows.
 
-use crate::clouds::{Cloud, describe, variants, whole, whole_outlined};
+use crate::clouds::{Cloud, variants, whole, whole_outlined};
 use crate::harness::{FREE, device};
-use crate::refine::{must_be_close, must_be_identical};
+use crate::refine::check_with;
 use surfine::curves::Curves;
 use surfine::records::{Candidate, Params};
 use surfine::shaders::SHADERS;
@@ -61,15 +61,8 @@ fn run(
 }
 
 fn check(refiner: &mut Refiner, cloud: &Cloud, params: &RefineParams, is_exact: bool) {
-    let name = format!("{} {} in windows", cloud.name, describe(params));
-    let expected = surfine_reference::refine(&cloud.points, params).expect("the cloud is sound");
-    let found = refiner.refine(&cloud.points, params).unwrap_or_else(|e| panic!("{name}: {e}"));
-    assert!(32 * found.points.len() as u64 > 2 * BINDING, "{name}: few bindings would do");
-    if is_exact {
-        must_be_identical(&name, &expected, &found);
-    } else {
-        must_be_close(&name, &expected, &found);
-    }
+    let found = check_with(refiner, is_exact, cloud, params);
+    assert!(32 * found.points.len() as u64 > 2 * BINDING, "{}: few bindings would do", cloud.name);
 }
 
 #[test]
