@@ -10,10 +10,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::mem::offset_of;
 use std::path::{Path, PathBuf};
-use surfine::curves::Curves;
-use surfine::shaders::{SHADERS, Shader};
 use surfine::testing::constants;
-use surfine::{RefineParams, Rules, exact_spirv, records};
+use surfine::testing::curves::Curves;
+use surfine::testing::shaders::{SHADERS, Shader};
+use surfine::testing::{exact_spirv, records};
+use surfine::{RefineParams, Rules};
 
 /// The constants that the engine gives to every kernel that declares them.
 fn known_constants() -> Vec<&'static str> {
@@ -117,7 +118,7 @@ fn entry_points_are_named_like_their_files() {
         assert_eq!(entry.name, shader.entry);
         // `linear_index` has the same number in its text.
         assert_eq!(entry.workgroup_size, [64, 1, 1], "{}", shader.name);
-        assert_eq!(surfine::WORKGROUP_SIZE, 64);
+        assert_eq!(surfine::testing::WORKGROUP_SIZE, 64);
     }
 }
 
@@ -460,7 +461,7 @@ fn constant(file: &str, name: &str) -> u32 {
 
 #[test]
 fn constants_are_those_of_the_reference() {
-    use surfine::curves::{RECORD_WORDS, SEGMENT_WORDS};
+    use surfine::testing::curves::{RECORD_WORDS, SEGMENT_WORDS};
     use surfine_reference::{
         candidates, coloring, conflicts, insertion, neighborhood, pn_triangle, visible,
     };

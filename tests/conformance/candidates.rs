@@ -2,7 +2,7 @@
 
 use crate::harness::{compare, compare_equal, device, must, steps};
 use crate::tolerance::{NORMAL, POSITION, RADIUS};
-use surfine::records::{Candidate, Fan};
+use surfine::testing::records::{Candidate, Fan};
 
 #[test]
 fn candidates_are_those_of_the_reference() {

@@ -2,7 +2,7 @@
 
 use crate::harness::{compare, compare_equal, device, must, steps};
 use crate::tolerance::{NORMAL, POSITION};
-use surfine::records::{LEVEL_BITS, Point};
+use surfine::testing::records::{LEVEL_BITS, Point};
 use surfine_reference::commit::commit;
 
 #[test]

@@ -4,7 +4,7 @@ use crate::harness::{
     ARENA_WORDS, CONFLICTS, Device, MIRROR_LINKS, Step, compare_equal, device, grid_words, must,
     steps_with,
 };
-use surfine::records::{Counters, Fan};
+use surfine::testing::records::{Counters, Fan};
 
 /// What the kernels leave: lists, and links to the points whose conflicts only the other side found.
 pub(crate) struct ConflictBuffers {

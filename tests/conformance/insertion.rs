@@ -5,7 +5,7 @@ use crate::harness::{
     steps_with,
 };
 use crate::tolerance::RADIUS;
-use surfine::records::Candidate;
+use surfine::testing::records::Candidate;
 
 /// States of the candidates and bits of the radii after all classes, each in the order that `arrange` makes of it. Points with
 /// an odd index are left to the rows in the arena, and others only where the private rows are too short.

@@ -5,7 +5,7 @@ use crate::harness::{
     steps,
 };
 use crate::tolerance::ANGLE;
-use surfine::records::{ARENA_BLOCK, Counters, Fan};
+use surfine::testing::records::{ARENA_BLOCK, Counters, Fan};
 use surfine_reference::neighborhood::RingEntry;
 
 /// The fans and ring entries that a kernel leaves, and the counters. All points were left over before.

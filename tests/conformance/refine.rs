@@ -4,7 +4,7 @@ use crate::clouds::{Cloud, demanding, describe, shared_outlined, variants, whole
 use crate::harness::{Device, compare, compare_equal, device, first_level, must};
 use crate::tolerance::{EXACT, FLIPPED_DECISIONS, POSITION};
 use std::collections::HashMap;
-use surfine::records::Point;
+use surfine::testing::records::Point;
 use surfine::testing::{Sizing, read};
 use surfine::{Boundary, LevelReport, Mode, PointSet, RefineParams, Refined, Refiner, Rules, Vec3};
 use surfine_points::shapes::{Sampling, Shape, sample};

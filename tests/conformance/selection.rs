@@ -5,8 +5,8 @@ use crate::harness::{
     constant, device, grid_words, must, steps_with,
 };
 use crate::tolerance::RADIUS;
-use surfine::records::{Candidate, Fan};
 use surfine::testing::Buffer;
+use surfine::testing::records::{Candidate, Fan};
 use surfine_points::Grid;
 
 /// The candidates and the links of those that discard each other.

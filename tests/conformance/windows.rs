@@ -3,11 +3,12 @@
 use crate::clouds::{Cloud, variants, whole, whole_outlined};
 use crate::harness::{FREE, device};
 use crate::refine::check_with;
-use surfine::curves::Curves;
-use surfine::records::{Candidate, Params};
-use surfine::shaders::SHADERS;
+use surfine::testing::Kernel;
+use surfine::testing::curves::Curves;
+use surfine::testing::records::{Candidate, Params};
+use surfine::testing::shaders::SHADERS;
 use surfine::testing::{Buffer, Commands, Uniforms, constants, read};
-use surfine::{Error, Gpu, Kernel, Mode, RefineParams, Refiner, wgpu};
+use surfine::{Error, Gpu, Mode, RefineParams, Refiner, wgpu};
 
 /// Bytes that the devices of these tests allow in a binding: a third of the largest buffers, and no multiple of a record.
 const BINDING: u64 = 100_000;

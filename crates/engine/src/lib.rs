@@ -1,8 +1,10 @@
 //! Refines clouds of oriented points on the GPU: interpolatory refinement of point-based geometry (Guennebaud, Barthe
 //! and Paulin 2005) as compute kernels.
 //!
-//! [`Refiner`] is the whole interface: it holds a device with compiled kernels and buffers, and refines one cloud after
-//! the other. Input points stay as they are, new points lie on the smooth surface through them.
+//! [`Refiner`] holds a device with compiled kernels and buffers, and refines one cloud after the other, in one go or in
+//! [`Slices`]. Input points stay as they are, new points lie on the smooth surface through them. All else here is what it takes
+//! and gives: [`Gpu`] and [`choose_adapter`] to choose a device, [`PointSet`] and [`RefineParams`] for what is refined and how,
+//! [`Refined`] on the host and [`GpuRefined`] on the device, and [`Forecast`] of what a run will need.
 //!
 //! ```no_run
 //! use surfine::{PointSet, RefineParams, Refiner};
@@ -19,7 +21,7 @@
 mod buffers;
 mod clock;
 mod commands;
-pub mod curves;
+mod curves;
 mod error;
 mod forecast;
 mod gpu;
@@ -27,11 +29,11 @@ mod kernel;
 mod pace;
 mod profile;
 mod read_back;
-pub mod records;
+mod records;
 mod refiner;
 mod run;
 mod scan;
-pub mod shaders;
+mod shaders;
 mod sizing;
 mod slices;
 mod stages;
@@ -42,8 +44,8 @@ mod windows;
 pub use error::Error;
 pub use forecast::{Forecast, points_by_level};
 pub use gpu::{Gpu, Mode, adapters, choose_adapter};
-pub use kernel::{Kernel, WORKGROUP_SIZE, exact_spirv};
 pub use profile::KernelTime;
+pub use records::Point;
 pub use refiner::{GpuRefined, Refiner};
 pub use slices::Slices;
 pub use surfine_points::{
@@ -61,9 +63,23 @@ struct Readme;
 pub mod testing {
     pub use crate::buffers::Buffer;
     pub use crate::commands::Commands;
+    pub use crate::kernel::{Kernel, WORKGROUP_SIZE, exact_spirv};
     pub use crate::sizing::Sizing;
     pub use crate::step::{Constants, constants};
     pub use crate::uniforms::Uniforms;
+
+    /// Creases and boundaries as the kernels see them.
+    pub mod curves {
+        pub use crate::curves::*;
+    }
+    /// Records that kernels and host share.
+    pub mod records {
+        pub use crate::records::*;
+    }
+    /// The kernels' texts.
+    pub mod shaders {
+        pub use crate::shaders::*;
+    }
 
     /// Reads the first `count` values of a buffer.
     ///

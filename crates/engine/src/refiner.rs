@@ -32,7 +32,7 @@ pub struct Refiner {
 /// A refined cloud that stays on the device.
 #[derive(Debug)]
 pub struct GpuRefined {
-    /// [`Point`](crate::records::Point)s of 32 bytes: position at offset 0, radius at 12, normal at 16, level in the byte at
+    /// [`Point`](crate::Point)s of 32 bytes: position at offset 0, radius at 12, normal at 16, level in the byte at
     /// 28. Usable as vertex or storage buffer and as copy source; it may be longer than [`GpuRefined::len`] of them, and than the
     /// device allows in one binding. The input comes first, in the order of `ordered`. A point on a crease is one of these
     /// records for each of its sides: those of further normals follow the input points, and the new ones follow each other.

@@ -227,7 +227,7 @@ impl Step<'_> {
         } else if *part > 1 {
             *part = part.div_ceil(2);
         } else {
-            let (what, have) = ("neighbours of one point", self.gpu.largest_binding());
+            let (what, have) = ("neighbors of one point", self.gpu.largest_binding());
             return Err(Error::Limit { what, need, have, adapter: self.gpu.name.clone() });
         }
         Ok(false)

@@ -288,7 +288,7 @@ mod tests {
             split(&mut module, &counts, 7680).unwrap_or_else(|e| panic!("{}: {e}", shader.name));
             let has_windows = counts.iter().any(|count| *count > 1);
             assert_eq!(module.functions.len() > before, has_windows, "{}", shader.name);
-            crate::exact_spirv(shader.entry, &module, &[])
+            crate::kernel::exact_spirv(shader.entry, &module, &[])
                 .unwrap_or_else(|e| panic!("{}: {e}", shader.name));
         }
     }

@@ -89,7 +89,7 @@ impl Evaluation {
             }
         }
         if let Some(smoothness) = &self.smoothness {
-            rows.push(row("normals to neighbours'", "degrees", angles(&smoothness.output)));
+            rows.push(row("normals to neighbors'", "degrees", angles(&smoothness.output)));
             if let Some(truth) = &smoothness.truth {
                 rows.push(row("  the same of the truth", "degrees", angles(truth)));
             }
@@ -99,7 +99,7 @@ impl Evaluation {
 
     fn distribution_rows(&self) -> Vec<Row> {
         let (uniformity, chamfer) = (&self.uniformity, &self.chamfer);
-        let mut rows = vec![row("nearest neighbour (nnCV)", "1", number(uniformity.nn_cv))];
+        let mut rows = vec![row("nearest neighbor (nnCV)", "1", number(uniformity.nn_cv))];
         if let Some(discs) = &uniformity.discs {
             let text = discs.iter().map(disc).collect::<Vec<_>>().join("  ");
             rows.push(row("uniformity (PU-GAN)", "file units", text));
@@ -123,7 +123,7 @@ impl Evaluation {
             if let Some(nearest) = colors.nearest_input_rms {
                 text += &format!("  (nearest input point: rms {})", number(nearest));
             }
-            rows.push(row("colour error", "of 255", text));
+            rows.push(row("color error", "of 255", text));
         }
         if let Some(found) = &self.survival {
             rows.push(row("input kept", "points", survival(found)));

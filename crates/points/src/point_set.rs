@@ -212,7 +212,7 @@ pub enum Invalid {
     ZeroNormal { point: usize, length: f32 },
     #[error(
         "vertex {point}: the radius is {radius:e}, not within 1e-10 to 1e15: it must exceed the distance to the \
-         farthest natural neighbour"
+         farthest natural neighbor"
     )]
     Radius { point: usize, radius: f32 },
     #[error(

@@ -488,7 +488,7 @@ fn incomplete_headers() -> Vec<Hostile> {
         (
             "no radius",
             ascii("1", ROW).replace("radius", "r").into(),
-            "no `radius`: add a property `radius`, at least the distance to the farthest natural neighbour, about 1.25 times it",
+            "no `radius`: add a property `radius`, at least the distance to the farthest natural neighbor, about 1.25 times it",
         ),
         (
             "list for x",

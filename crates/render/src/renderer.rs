@@ -7,8 +7,7 @@ use crate::view::Uniform;
 use crate::{Camera, Error, Picture, Size, Splats, Style};
 use glam::Vec3;
 use std::num::NonZeroU64;
-use surfine::records::Point;
-use surfine::{Gpu, GpuRefined, wgpu};
+use surfine::{Gpu, GpuRefined, Point, wgpu};
 
 /// The texts of the shaders by name: the passes over discs, and the pass over pixels.
 pub const SHADERS: [(&str, &str); 2] = [

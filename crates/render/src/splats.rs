@@ -4,7 +4,7 @@ use crate::style::{SOLID, pack};
 use crate::{Space, creases};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
-use surfine::records::Point;
+use surfine::Point;
 use surfine_points::{PointSet, Values};
 
 /// Points ready to be drawn, on the host.

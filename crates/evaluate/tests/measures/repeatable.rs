@@ -89,7 +89,7 @@ fn the_report_has_a_line_for_what_was_measured_and_none_for_the_rest() {
     assert!(line("truth ").contains("3600, diagonal"), "{report}");
     assert!(line("distance to the mesh").contains("file units"), "{report}");
     assert!(line("normal error").contains("degrees"), "{report}");
-    assert!(line("colour error").contains("of 255"), "{report}");
+    assert!(line("color error").contains("of 255"), "{report}");
     assert!(line("input kept").contains("1500 of 1500"), "{report}");
     let plain = scenes::cloud(scenes::torus(9, 9).positions);
     let report = scenes::measure(&plain, &scenes::truth(&plain)).to_string();

@@ -57,7 +57,7 @@ pub(super) fn check_core(path: &Path, header: &Header, needed: &[Core]) -> Resul
         (has(|r| matches!(r, Core::Normal(_))), "add normals nx ny nz, unit length, outward"),
         (
             has(|r| matches!(r, Core::Radius)),
-            "add a property `radius`, at least the distance to the farthest natural neighbour, about 1.25 times it",
+            "add a property `radius`, at least the distance to the farthest natural neighbor, about 1.25 times it",
         ),
     ];
     let remedies: Vec<&str> = remedies.into_iter().filter(|r| r.0).map(|r| r.1).collect();

@@ -6,7 +6,7 @@ use crate::style::{SOFT, SOLID};
 use crate::view::{DATA, LEVEL, NORMAL, PAINT, RADIUS, Uniform};
 use crate::{Size, Splats};
 use glam::{Mat3, Vec2, Vec3};
-use surfine::records::Point;
+use surfine::Point;
 
 /// Share of a disc's radius by which the visibility passes push it away from the eye.
 pub(crate) const PUSH: f32 = 0.5;
