@@ -532,6 +532,53 @@ fn stages() -> BTreeSet<&'static str> {
     [true, false].into_iter().flat_map(stages).collect()
 }
 
+/// What the comment at the head of a kernel file says of its twins: the functions that it names, and the files.
+fn twins(text: &str) -> Option<(Vec<&str>, Vec<&str>)> {
+    let head = text.split("\n\n").next()?;
+    let said = head.split_once("Twin")?.1;
+    // Up to the next sentence: a capital, but for "eq. 6".
+    let next =
+        said.match_indices(". ").find(|(at, _)| said[at + 2..].starts_with(char::is_uppercase));
+    let said = &said[..next.map_or(said.len(), |(at, _)| at)];
+    let said = ["\n//\n", "\n// One "].iter().fold(said, |s, end| s.split(end).next().unwrap());
+    let names = said.split('`').skip(1).step_by(2).collect();
+    let words = said.split([' ', '\n', ',', ';']).map(|word| word.trim_end_matches('.'));
+    let files = words.filter(|word| word.ends_with(".rs") || word.ends_with(".wgsl")).collect();
+    Some((names, files))
+}
+
+/// Whether Rust or WGSL defines something of that name.
+fn defines(code: &str, name: &str) -> bool {
+    let last = name.rsplit("::").next().unwrap();
+    ["fn", "struct", "const"].iter().any(|kind| {
+        let definition = format!("{kind} {last}");
+        let mut after = code.split(definition.as_str()).skip(1);
+        after.any(|rest| !rest.starts_with(|c: char| c.is_alphanumeric() || c == '_'))
+    })
+}
+
+#[test]
+fn twins_are_where_kernels_say() {
+    let mut found = 0;
+    for folder in ["shaders", "shaders/shared"] {
+        for (stem, text) in files(folder) {
+            let Some((names, paths)) = twins(&text) else { continue };
+            assert!(!paths.is_empty(), "{stem}.wgsl names no file");
+            let read = |path: &&str| {
+                let base = if path.ends_with(".wgsl") { root().join(folder) } else { root() };
+                fs::read_to_string(base.join(path))
+                    .unwrap_or_else(|e| panic!("{stem}: {path}: {e}"))
+            };
+            let code: String = paths.iter().map(read).collect();
+            for name in &names {
+                assert!(defines(&code, name), "{stem}.wgsl: no `{name}` in {paths:?}");
+            }
+            found += 1;
+        }
+    }
+    assert!(found > 40, "{found} files name a twin");
+}
+
 #[test]
 fn stages_have_one_word_everywhere() {
     let path = root().join("docs/algorithm.md");
