@@ -10,7 +10,6 @@
 @group(0) @binding(2) var<storage, read> points: array<Point>;
 @group(0) @binding(3) var<storage, read> fans: array<Fan>;
 @group(0) @binding(4) var<storage, read> of_slot: array<u32>;
-/// As Candidate, with the state atomic.
 @group(0) @binding(5) var<storage, read_write> candidates: array<SharedCandidate>;
 /// Lists of candidates around points and of conflicts.
 @group(0) @binding(6) var<storage, read> around: array<u32>;
@@ -21,14 +20,6 @@
 @group(0) @binding(9) var<storage, read_write> arena: array<u32>;
 @group(0) @binding(10) var<storage, read_write> counters: Counters;
 @group(0) @binding(11) var<storage, read> curves: array<u32>;
-
-struct SharedCandidate {
-    place: vec4<f32>,
-    normal: vec3<f32>,
-    state: atomic<u32>,
-    corners: vec3<u32>,
-    size: f32,
-}
 
 // Rows of N': candidates, and after the last one the points of the level that only bound gaps; angle on the
 // tangent plane; place relative to the centre; normal; radius of the discard sphere. Then its members in order,

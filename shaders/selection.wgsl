@@ -5,7 +5,6 @@
 // A candidate is inserted unless one before it that discards it was. So what is inserted is what a sequential loop
 // would insert, whatever rounds it takes. Most candidates are linked to nobody.
 
-/// As Candidate, with the state atomic.
 @group(0) @binding(2) var<storage, read_write> candidates: array<SharedCandidate>;
 @group(0) @binding(3) var<storage, read> heads: array<u32>;
 @group(0) @binding(4) var<storage, read> links: array<vec2<u32>>;

@@ -1,11 +1,6 @@
-/// As Candidate, with the state atomic.
-struct SharedCandidate {
-    place: vec4<f32>,
-    normal: vec3<f32>,
-    state: atomic<u32>,
-    corners: vec3<u32>,
-    size: f32,
-}
+// Who is inserted: a candidate unless one before it that discards it was. Twin: `select` in crates/reference/src/selection.rs
+//
+// Expects `candidates`, `heads` and `links`.
 
 /// The state of a candidate, as far as those that discard it have theirs.
 fn state_of(c: u32) -> u32 {

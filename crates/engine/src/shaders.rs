@@ -89,6 +89,7 @@ const CONFLICTS: [Shader; 2] = with_rows!(
 const INSERTION: [Shader; 2] = with_rows!(
     "insertion",
     "insertion_large",
+    "shared_candidate",
     "new_ring",
     "gather",
     "gaps",
@@ -147,8 +148,8 @@ pub const SHADERS: &[Shader] = &[
     shader!("selection_contested", "cut_loops"),
     shader!("selection_links", "precedence", "priority", "math", "same_side", "cut_loops"),
     shader!("selection_round"),
-    shader!("selection", "state_of", "cut_loops"),
-    shader!("selection_tail", "state_of", "cut_loops"),
+    shader!("selection", "shared_candidate", "state_of", "cut_loops"),
+    shader!("selection_tail", "shared_candidate", "state_of", "cut_loops"),
     shader!("selection_stand_in", "math", "cut_loops"),
     shader!("selection_radii", "cover", "math", "cut_loops"),
     CONFLICTS[0],
