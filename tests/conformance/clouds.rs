@@ -1,5 +1,7 @@
 //! The clouds that conformance is shown on.
 
+use glam::Vec2;
+use std::f32::consts::TAU;
 use std::path::Path;
 use surfine::{Neighborhood, PointSet, RefineParams, Rules, Vec3};
 use surfine_points::ply;
@@ -19,7 +21,7 @@ impl Cloud {
     }
 }
 
-/// Small clouds for single kernels: even, random and regular, closed and open.
+/// Small clouds for single kernels: even, random and regular, closed and open, and one with a long ring.
 pub(crate) fn small() -> Vec<Cloud> {
     vec![
         Cloud::new("sphere", sample(Shape::Sphere, Sampling::BlueNoise, 300, 1)),
@@ -31,6 +33,7 @@ pub(crate) fn small() -> Vec<Cloud> {
             "crowded sphere",
             scaled_radii(sample(Shape::Sphere, Sampling::Random, 300, 4), 2.0),
         ),
+        Cloud::new("wheel", wheel()),
     ]
 }
 
@@ -142,6 +145,15 @@ fn shared(file: &str) -> Option<Cloud> {
     }
     let (points, _) = ply::read(&path).expect("the shared file is sound");
     Some(Cloud::new(file, points))
+}
+
+/// A point amid so many on a circle that its ring is too long for private rows.
+fn wheel() -> PointSet {
+    const SPOKES: usize = 60;
+    let around = |i: usize| Vec3::from((Vec2::from_angle(TAU * i as f32 / SPOKES as f32), 0.0));
+    let positions: Vec<Vec3> = std::iter::once(Vec3::ZERO).chain((0..SPOKES).map(around)).collect();
+    let (normals, radii) = (vec![Vec3::Z; SPOKES + 1], vec![1.25; SPOKES + 1]);
+    PointSet::new(positions, normals, radii)
 }
 
 fn scaled_radii(mut points: PointSet, factor: f32) -> PointSet {
