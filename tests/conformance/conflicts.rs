@@ -1,8 +1,8 @@
 //! The kernels of what is around each point and of the conflict graph, on the reference's candidates.
 
 use crate::harness::{
-    ARENA_WORDS, CONFLICTS, Device, MIRROR_LINKS, Step, compare_equal, device, grid_words, must,
-    steps_with,
+    ARENA_WORDS, CONFLICTS, Device, INSERTION, MIRROR_LINKS, NEXT_RING, Step, compare_equal,
+    constant, device, grid_words, must, steps_with,
 };
 use surfine::testing::records::{Counters, Fan};
 
@@ -87,6 +87,9 @@ fn sorted(mut list: Vec<u32>) -> Vec<u32> {
 #[test]
 fn lists_and_graph_are_those_of_the_reference() {
     let mut device = device();
+    let [longest_new, longest_next] =
+        ["insertion", "next_ring"].map(|kernel| constant(kernel, "CAPACITY"));
+    let mut left_over = 0;
     for step in steps_with(false) {
         let n = step.level.len();
         let reference = &step.state.conflicts;
@@ -100,7 +103,14 @@ fn lists_and_graph_are_those_of_the_reference() {
                 let what = format!("{} {kernel}: conflicts of {p}", step.name);
                 let before = sorted(reference.before.of(p).to_vec());
                 must(compare_equal(&what, &before, &found.before(p)));
+                // Rows of the insertion may grow beyond the lists, those of the next ring do not.
+                let Fan { slots, around, left_over: bits, .. } = found.fans[p];
+                let is_long = around[1] + slots[1] + 1 > longest_next;
+                assert_eq!(bits & NEXT_RING != 0, is_long, "{what}");
+                assert!(bits & INSERTION != 0 || around[1] < longest_new, "{what}");
+                left_over |= bits;
             }
         }
     }
+    assert_eq!(left_over, INSERTION | NEXT_RING, "not both have rows that are too long");
 }
