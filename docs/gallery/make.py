@@ -97,7 +97,7 @@ rim of the neck is eaten away; on the right with the boundary.""",
     (
         "Figure 11: sharp bends",
         """The paper shows holes at a sharp bend without the geodesic projection and without the curved angle. Here an ear of the armadillo, two
-sheets less than an input spacing apart, after two steps by the paper's selection, which
+sheets less than an input spacing apart, after two steps by the paper's loop, which
 asks for angles: with both, without the projection, without both, and the true surface. We see no
 holes, but more wrong normals without the projection (orange: backs). [algorithm.md](algorithm.md#geodesic-projection-and-curved-angle) has figures.""",
         [

@@ -20,8 +20,8 @@ pub(crate) fn literal(levels: u32) -> RefineParams {
     RefineParams { levels, rules: Rules::LITERAL, ..RefineParams::default() }
 }
 
-/// That many levels by all rules but `largest_first`: with the paper's selection, around one point after the other.
-pub(crate) fn by_gaps(levels: u32) -> RefineParams {
+/// That many levels by all rules but `largest_first`: by the paper's loop, around one point after the other.
+pub(crate) fn paper_loop(levels: u32) -> RefineParams {
     let rules = Rules { largest_first: false, ..Rules::ALL };
     RefineParams { levels, rules, ..RefineParams::default() }
 }

@@ -5,7 +5,7 @@ use surfine_points::shapes::{Shape, hexagonal_grid};
 use surfine_points::{PointSet, RefineParams, Refined, Rules, Vec3};
 
 use crate::clouds::{
-    blue_noise, by_gaps, joined, levels, literal, random, refine, with_radii_times,
+    blue_noise, joined, levels, literal, paper_loop, random, refine, with_radii_times,
 };
 use crate::measure::{assert_same_bytes, growths, largest_empty_disc, mean, nearest_variation};
 
@@ -13,7 +13,7 @@ use crate::measure::{assert_same_bytes, growths, largest_empty_disc, mean, neare
 fn random_samples_come_out_more_even() {
     for (shape, seed) in [(Shape::Torus, 1), (Shape::Ellipsoid, 2), (Shape::Sphere, 3)] {
         let cloud = random(shape, 1500, seed);
-        let (text, rules) = (refine(&cloud, &literal(4)), refine(&cloud, &by_gaps(4)));
+        let (text, rules) = (refine(&cloud, &literal(4)), refine(&cloud, &paper_loop(4)));
         let [before, after] = [&text, &rules].map(|r| nearest_variation(&r.points));
         // Measured .354 to .344, .359 to .346, .362 to .352.
         assert!(after < before - 0.005, "{shape}: variation {before}, with the rules {after}");
@@ -32,7 +32,7 @@ fn random_samples_come_out_more_even() {
 fn random_samples_come_out_more_even_the_largest_first() {
     for (shape, seed) in [(Shape::Torus, 1), (Shape::Ellipsoid, 2), (Shape::Sphere, 3)] {
         let cloud = random(shape, 1500, seed);
-        let [before, after] = [by_gaps(4), levels(4)].map(|params| refine(&cloud, &params));
+        let [before, after] = [paper_loop(4), levels(4)].map(|params| refine(&cloud, &params));
         // Measured .346 to .295, .350 to .293, .353 to .306.
         let variations = [&before, &after].map(|refined| nearest_variation(&refined.points));
         assert!(variations[1] < 0.9 * variations[0], "{shape}: variation {variations:?}");
@@ -77,10 +77,10 @@ fn generous_radii_change_next_to_nothing() {
 #[test]
 fn generous_radii_change_little_by_the_papers_loop() {
     let cloud = random(Shape::Torus, 1500, 1);
-    let (_, [growth, variation, disc]) = with_radii(&cloud, 1.0, &by_gaps(4));
+    let (_, [growth, variation, disc]) = with_radii(&cloud, 1.0, &paper_loop(4));
     // Measured 2.736 points for one, variation .344 to .346, discs of 8.56.
     for factor in [1.25, 1.5, 2.0] {
-        let (_, found) = with_radii(&cloud, factor, &by_gaps(4));
+        let (_, found) = with_radii(&cloud, factor, &paper_loop(4));
         assert!((found[0] - growth).abs() < 0.04, "x {factor}: growth {} and {growth}", found[0]);
         assert!((found[1] - variation).abs() < 0.02, "x {factor}: {} and {variation}", found[1]);
         assert!(found[2] < 1.25 * disc, "x {factor}: empty disc of {} and {disc}", found[2]);

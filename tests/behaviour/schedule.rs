@@ -12,17 +12,18 @@ use surfine_reference::insertion::{Insertion, Order, Stage, insertion};
 use surfine_reference::{Level, refine_with, run_level};
 
 use crate::clouds::{
-    blue_noise, by_gaps, jittered_grid, levels, random, refine, with_radii_times, with_uneven_radii,
+    blue_noise, jittered_grid, levels, paper_loop, random, refine, with_radii_times,
+    with_uneven_radii,
 };
 use crate::curves::{even, uneven};
 use crate::measure::assert_same_bytes;
 
-/// The accurate neighbourhood, the fuzzy one, and the simplified variant, at 3 levels with the paper's selection, which alone has
+/// The accurate neighbourhood, the fuzzy one, and the simplified variant, at 3 levels with the paper's loop, which alone has
 /// an order of points.
 fn variants() -> [(&'static str, RefineParams); 3] {
-    let fuzzy = RefineParams { neighborhood: Neighborhood::Fuzzy, ..by_gaps(3) };
-    let simplified = RefineParams { simplified: true, ..by_gaps(3) };
-    [("accurate", by_gaps(3)), ("fuzzy", fuzzy), ("simplified", simplified)]
+    let fuzzy = RefineParams { neighborhood: Neighborhood::Fuzzy, ..paper_loop(3) };
+    let simplified = RefineParams { simplified: true, ..paper_loop(3) };
+    [("accurate", paper_loop(3)), ("fuzzy", fuzzy), ("simplified", simplified)]
 }
 
 fn refine_in_order(points: &PointSet, params: &RefineParams, order: Order) -> Refined {
@@ -106,7 +107,7 @@ fn order_is_invisible_where_small_radii_make_the_cells_small() {
         cloud.radii[i] *= 0.05;
     }
     let cloud = with_radii_times(cloud, 1.5);
-    let refined = refine(&cloud, &by_gaps(1));
+    let refined = refine(&cloud, &paper_loop(1));
     assert!(refined.reports[0].isolated > 300, "small radii see nothing");
     for (variant, params) in variants() {
         let ascending = refine_in_order(&cloud, &params, Order::Ascending);
@@ -145,8 +146,9 @@ fn assert_threads_are_invisible(cloud: &PointSet) {
     let simplified = || RefineParams { simplified: true, ..levels(3) };
     let with_threads = |threads| {
         let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.expect("threads can be started")
-            .install(|| [levels(3), by_gaps(3), simplified()].map(|params| refine(cloud, &params)))
+        pool.expect("threads can be started").install(|| {
+            [levels(3), paper_loop(3), simplified()].map(|params| refine(cloud, &params))
+        })
     };
     let one = with_threads(1);
     for threads in [2, 3] {
@@ -159,7 +161,7 @@ fn assert_threads_are_invisible(cloud: &PointSet) {
 /// The insertion of one level under classes of the caller's choice.
 fn insert(points: &PointSet, classes: impl Fn(&Classes) -> Classes, order: Order) -> Insertion {
     let level = Level::new(&Records::split(points).expect("the points are fit"));
-    let params = by_gaps(1);
+    let params = paper_loop(1);
     let (state, _) = run_level(&level, &params, order, &mut |_| ());
     assert_eq!(state.classes, coloring(&state.conflicts.before));
     let stage = Stage {

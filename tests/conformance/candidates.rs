@@ -44,7 +44,7 @@ fn candidates_are_those_of_the_reference() {
         device.run(run, &[&points, &fans, &candidates, &counters, &curves]);
         let widest = f32::from_bits(device.read_counters(&counters, &step.name).widest);
         let scale = expected.rho.iter().copied().fold(0.0, f32::max);
-        // The paper's selection alone asks for it.
+        // The paper's loop alone asks for it.
         let asked = if step.refine.rules.largest_first { 0.0 } else { scale };
         must(compare(&what("largest rho"), &[asked], &[widest], device.allows(POSITION), scale));
         let found: Vec<Candidate> = device.read(&candidates, expected.len());

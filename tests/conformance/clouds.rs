@@ -109,16 +109,16 @@ pub(crate) fn whole() -> Vec<(Cloud, u32)> {
     clouds
 }
 
-/// Accurate, fuzzy and simplified; the same with the paper's selection, and the paper's text.
+/// Accurate, fuzzy and simplified; the same with the paper's loop, and the paper's text.
 pub(crate) fn variants() -> [RefineParams; 6] {
     let accurate = RefineParams::default();
     let fuzzy = RefineParams { neighborhood: Neighborhood::Fuzzy, ..accurate.clone() };
     let simplified = RefineParams { simplified: true, ..accurate.clone() };
     let rules = Rules { largest_first: false, ..Rules::ALL };
-    let [by_gaps, simplified_by_gaps] =
+    let [paper_loop, simplified_loop] =
         [&accurate, &simplified].map(|params| RefineParams { rules, ..params.clone() });
     let literal = RefineParams { rules: Rules::LITERAL, ..accurate.clone() };
-    [accurate, fuzzy, simplified, by_gaps, simplified_by_gaps, literal]
+    [accurate, fuzzy, simplified, paper_loop, simplified_loop, literal]
 }
 
 /// What tells a variant from the others.

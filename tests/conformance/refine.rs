@@ -148,12 +148,12 @@ fn other_parameters_reach_the_kernels() {
     let defaults = RefineParams { levels: 2, ..RefineParams::default() };
     let rules = Rules { largest_first: false, ..Rules::ALL };
     // The default selection asks neither for angles between new neighbours nor for the largest of them.
-    let by_gaps = RefineParams { rules, ..defaults.clone() };
+    let paper_loop = RefineParams { rules, ..defaults.clone() };
     for (params, base) in [
-        (RefineParams { plain_angle: true, ..by_gaps.clone() }, &by_gaps),
-        (RefineParams { theta_c: 1.2, ..by_gaps.clone() }, &by_gaps),
-        (RefineParams { lambda1: 0.4, ..by_gaps.clone() }, &by_gaps),
-        (RefineParams { lambda2: 0.8, ..by_gaps.clone() }, &by_gaps),
+        (RefineParams { plain_angle: true, ..paper_loop.clone() }, &paper_loop),
+        (RefineParams { theta_c: 1.2, ..paper_loop.clone() }, &paper_loop),
+        (RefineParams { lambda1: 0.4, ..paper_loop.clone() }, &paper_loop),
+        (RefineParams { lambda2: 0.8, ..paper_loop.clone() }, &paper_loop),
         (RefineParams { theta_f: 0.3, ..defaults.clone() }, &defaults),
         (RefineParams { lambda1: 0.4, ..defaults.clone() }, &defaults),
         (RefineParams { lambda2: 0.8, ..defaults.clone() }, &defaults),
@@ -173,8 +173,8 @@ fn each_rule_left_out_reaches_the_kernels() {
     let clouds = demanding();
     for (rule, _) in Rules::ALL.named() {
         // These mean nothing to the default selection.
-        let by_gaps = ["first_radii", "curve_bounds"].contains(&rule);
-        let all = Rules { largest_first: !by_gaps, ..Rules::ALL };
+        let paper_loop = ["first_radii", "curve_bounds"].contains(&rule);
+        let all = Rules { largest_first: !paper_loop, ..Rules::ALL };
         let mut others = all;
         *others.get_mut(rule).expect("it is its name") = false;
         let params = |rules| RefineParams { levels: 2, rules, ..RefineParams::default() };
@@ -239,10 +239,10 @@ fn buffers_that_turn_out_too_small_grow() {
     let params = RefineParams { levels: 2, ..RefineParams::default() };
     let simplified = RefineParams { simplified: true, ..params.clone() };
     let rules = Rules { largest_first: false, ..Rules::ALL };
-    let by_gaps = RefineParams { rules, ..params.clone() };
+    let paper_loop = RefineParams { rules, ..params.clone() };
     // Large, small and large again: buffers are used for clouds of other sizes.
     for (i, params) in
-        [(1, &params), (0, &simplified), (2, &by_gaps), (2, &simplified), (1, &params)]
+        [(1, &params), (0, &simplified), (2, &paper_loop), (2, &simplified), (1, &params)]
     {
         let cloud = whole().swap_remove(i).0;
         check_with(&mut refiner, device().is_exact(), &cloud, params);

@@ -12,7 +12,7 @@ const TIMEOUT: Duration = Duration::from_secs(600);
 /// The most storage buffers that a kernel has.
 const KERNEL_BUFFERS: u32 = 10;
 /// All buffers of a kernel together are no longer than so many times the largest of them, on even clouds: 2.5 times by default, 3.1
-/// times by the paper's selection.
+/// times by the paper's loop.
 const BUFFERS_AT_ONCE: u64 = 4;
 
 /// How kernels were compiled.

@@ -296,12 +296,12 @@ impl RefineParams {
     /// that is off, or that mean nothing to the selection. For people; kernels are compiled for the former.
     pub fn rules_in_effect(&self) -> Rules {
         let rules = self.effective_rules();
-        let by_gaps = !rules.largest_first;
+        let paper_loop = !rules.largest_first;
         Rules {
             sure_neighbors: rules.sure_neighbors && rules.natural_neighbors,
             step_normals: rules.step_normals && rules.sliver_normals,
-            first_radii: rules.first_radii && by_gaps,
-            curve_bounds: rules.curve_bounds && by_gaps,
+            first_radii: rules.first_radii && paper_loop,
+            curve_bounds: rules.curve_bounds && paper_loop,
             ..rules
         }
     }

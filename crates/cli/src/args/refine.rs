@@ -169,7 +169,7 @@ impl RefineArgs {
             keep_radii: self.shows_stats(),
             ..usual
         });
-        // Only the paper's selection knows these.
+        // Only the paper's loop knows these.
         params.rules.largest_first &= theta_c.is_none() && !plain_angle;
         params
     }

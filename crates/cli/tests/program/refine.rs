@@ -139,7 +139,7 @@ fn json_adds_up() {
         let mean = |name: &str| level[name].as_f64().unwrap();
         assert!(mean("ball_neighbors_mean") >= mean("ring_neighbors_mean"));
         assert!((5.0..7.0).contains(&mean("ring_neighbors_mean")));
-        // Only the paper's selection has classes.
+        // Only the paper's loop has classes.
         assert_eq!(level["classes"], 0);
         assert_eq!(level["isolated"], 0);
         let stages = level["stages_ms"].as_object().unwrap();
@@ -205,14 +205,14 @@ fn options_reach_the_refinement() {
         folder.refine(more);
         assert!(folder.bytes("out.ply") != usual, "{more:?} changes nothing");
     }
-    // The paper's selection has parameters of its own, which ask for it.
+    // The paper's loop has parameters of its own, which ask for it.
     folder.refine(&["--theta-c", "89"]);
-    let by_gaps = folder.bytes("out.ply");
+    let paper_loop = folder.bytes("out.ply");
     folder.refine(&["--without", "largest_first"]);
-    assert!(folder.bytes("out.ply") == by_gaps, "--theta-c asks for the paper's selection");
+    assert!(folder.bytes("out.ply") == paper_loop, "--theta-c asks for the paper's loop");
     for more in [["--theta-c", "60"], ["--plain-angle", "--quiet"]] {
         folder.refine(&more);
-        assert!(folder.bytes("out.ply") != by_gaps, "{more:?} changes nothing");
+        assert!(folder.bytes("out.ply") != paper_loop, "{more:?} changes nothing");
     }
     let report = folder.refine_json(&["--literal"]);
     let levels = report["levels"].as_array().unwrap();
@@ -243,9 +243,9 @@ fn rules_in_effect_are_reported() {
     let two = ["--without", "own_side", "--without", "next_ring"];
     assert_eq!(rules(&two), without(&["own_side", "next_ring"]));
     assert_eq!(rules(&["--without", "natural_neighbors"]), without(&irregular[..2]));
-    let by_gaps = rules(&["--without", "largest_first"]);
-    assert!(by_gaps.len() == 14 && by_gaps.contains(&"first_radii".into()), "{by_gaps:?}");
-    assert_eq!(rules(&["--plain-angle"]), by_gaps);
+    let paper_loop = rules(&["--without", "largest_first"]);
+    assert!(paper_loop.len() == 14 && paper_loop.contains(&"first_radii".into()), "{paper_loop:?}");
+    assert_eq!(rules(&["--plain-angle"]), paper_loop);
     assert!(rules(&["--literal"]).is_empty());
 }
 
