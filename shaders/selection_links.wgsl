@@ -61,7 +61,10 @@ fn discards(h: u32, x: Contested) -> bool {
 /// Too small a buffer is seen by the host in the counters, and the stage runs again.
 fn add_link(h: u32, next: u32) -> u32 {
     let link = atomicAdd(&counters.mirrored, 1u);
-    if link >= params.mirror_links {
+    if link == NONE {
+        atomicAdd(&counters.mirrored_high, 1u);
+    }
+    if link >= params.mirror_links || atomicLoad(&counters.mirrored_high) > 0u {
         return next;
     }
     links[link] = vec2(h, next);

@@ -430,6 +430,7 @@ fn counters_are_laid_out_alike() {
         around,
         around_high,
         mirrored,
+        mirrored_high,
         classes,
         isolated,
         ball_low,

@@ -25,6 +25,7 @@ fn store(p: u32, reach: Reach, size: u32) -> bool {
     }
     if fans[p].left_over != 0u {
         atomicOr(&counters.left_over, fans[p].left_over);
+        atomicMax(&counters.longest_row, seen + fans[p].slots.y + 1u);
     }
     let first = atomicAdd(&counters.around, seen + found);
     if first + seen + found < first {

@@ -111,6 +111,8 @@ struct Counters {
     around_high: atomic<u32>,
     /// Links of mirrored conflicts, or of candidates to those that discard them, that were asked for.
     mirrored: atomic<u32>,
+    /// The same, high word.
+    mirrored_high: atomic<u32>,
     /// Number of classes.
     classes: atomic<u32>,
     /// Points without a ring.

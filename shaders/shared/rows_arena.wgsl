@@ -1,14 +1,15 @@
 // Scratch memory of one invocation: ROWS rows of words in the arena, as long as need be. Twin: rows_private.wgsl
 //
-// Expects `arena`, `counters` and `count_members`: how long the rows of a point must be. If the arena is too small, the counters
-// tell the host what to provide.
+// Expects `arena`, `counters` and `count_members`: how long the rows of a point must be. If the arena is too small, the
+// counters tell the host what to provide.
 
 /// First word and length of the rows.
 var<private> rows: vec2<u32>;
 
 const IN_ARENA: bool = true;
 
-/// Words of a block. A point takes whole blocks: the words of all points of a dispatch may be more than 32 bits can count.
+/// Words of a block. A point takes whole blocks: the words of all points of a dispatch may be more than 32 bits can
+/// count.
 const ARENA_BLOCK: u32 = 32u;
 
 fn open_rows(p: u32) -> bool {

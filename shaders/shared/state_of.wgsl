@@ -1,4 +1,5 @@
-// Who is inserted: a candidate unless one before it that discards it was. Twin: `select` in crates/reference/src/selection.rs
+// Who is inserted: a candidate unless one before it that discards it was. Twin: `select` in
+// crates/reference/src/selection.rs
 //
 // Expects `candidates`, `heads` and `links`.
 

@@ -1,11 +1,11 @@
 //! Section 8.1: radii fall from level to level, and the bound of eq. 13 and 14 that says so.
 //!
 //! The bound holds as printed. With p at the origin and both neighbours no farther than r, the new point is the mean of
-//! the three halves `½(b_210 + b_120)`, `½(b_201 + b_102)` and `½(b_021 + b_012)`; tangents have a third of their edge's
-//! length. So the first two are no longer than `½(1/3 + 1 + 1/3) r = 5/6 r`, and the third, for two neighbours at distance
-//! r, than `(cos β/2 + 2/3 sin β/2) r`: half the diagonal and a third of the edge. At unequal distances the triangle
-//! inequality gives 5/6 there where that is more, from β = 160° on, but no triangle comes near. The largest `c_β` is
-//! (5 + √13)/9 = .9562.
+//! the three halves `½(b_210 + b_120)`, `½(b_201 + b_102)` and `½(b_021 + b_012)`; tangents have a third of their
+//! edge's length. So the first two are no longer than `½(1/3 + 1 + 1/3) r = 5/6 r`, and the third, for two neighbours
+//! at distance r, than `(cos β/2 + 2/3 sin β/2) r`: half the diagonal and a third of the edge. At unequal distances the
+//! triangle inequality gives 5/6 there where that is more, from β = 160° on, but no triangle comes near. The largest
+//! `c_β` is (5 + √13)/9 = .9562.
 //!
 //! It is generous. A tangent never leads away from the other end of its edge, so the first two halves stay below
 //! `½ √(11/9 + 2 √10/9) r = .694 r`, and a search over all triangles found no new point beyond .802 r. On smooth
@@ -72,8 +72,8 @@ fn triangles(count: usize, seed: u64) -> Vec<[Corner; 3]> {
     (0..count).map(&mut make).collect()
 }
 
-/// The largest distance of what `center` makes of random triangles from their first corner: in shares of the radius, and
-/// of the bound.
+/// The largest distance of what `center` makes of random triangles from their first corner: in shares of the radius,
+/// and of the bound.
 fn reach(center: impl Fn([Corner; 3]) -> Vec3) -> (f32, f32) {
     let shares = triangles(200_000, 1).into_iter().filter_map(|corners| {
         let (radius, c) = bound(corners)?;
@@ -188,7 +188,8 @@ fn by_the_text_no_radius_rises() {
     for (name, cloud) in clouds() {
         // The 1.02 is ours. Points that wait for no new neighbour keep their radius: these are the 1.
         let largest = factors(&refine(&cloud, &kept(literal(4)))).into_iter().fold(0.0, f32::max);
-        // Measured .82 to .93 on even input, 1 on random: new neighbours of another fan may be farther than eq. 14 says.
+        // Measured .82 to .93 on even input, 1 on random: new neighbours of another fan may be farther than eq. 14
+        // says.
         let most = if name.starts_with("random") { 1.02 } else { 0.9562 * 1.02 };
         assert!(largest <= most, "{name}: a radius times {largest}");
     }

@@ -31,7 +31,8 @@ fn refine_closed(points: &PointSet, steps: u32) -> Refined {
     refined
 }
 
-/// A strip of the plane folded by 90° along x = 0: `z = -|x|`, with the points of the middle row given as `creased` says.
+/// A strip of the plane folded by 90° along x = 0: `z = -|x|`, with the points of the middle row given as `creased`
+/// says.
 fn roof(side: i32, creased: impl Fn(i32) -> bool) -> PointSet {
     let (left, right) =
         (Vec3::new(-1.0, 0.0, 1.0).normalize(), Vec3::new(1.0, 0.0, 1.0).normalize());

@@ -79,8 +79,8 @@ fn no_level_leaves_the_input_as_it_is() {
 
 #[test]
 fn single_steps_add_up_to_as_many_points() {
-    // The radii of a later run's input are no input radii, and its first step would be an odd one again, which splits no
-    // rim.
+    // The radii of a later run's input are no input radii, and its first step would be an odd one again, which splits
+    // no rim.
     let rules = Rules { first_radii: false, ..Rules::ALL };
     let levels = |n| RefineParams { rules, ..closed(n) };
     for (name, cloud) in clouds() {

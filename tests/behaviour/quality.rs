@@ -1,7 +1,8 @@
 //! What a right implementation shows: numbers of points, evenness, and closeness to the surface.
 //!
-//! All of it by the paper's text; `rules.rs` shows what the rules beyond it add. "Published" are the numbers of a separate sequential implementation in f64. Differences below .005 in growth and in
-//! the variation of nearest distances are noise between orders of the points, and so are .015 at a level of 600 points.
+//! All of it by the paper's text; `rules.rs` shows what the rules beyond it add. "Published" are the numbers of a
+//! separate sequential implementation in f64. Differences below .005 in growth and in the variation of nearest
+//! distances are noise between orders of the points, and so are .015 at a level of 600 points.
 
 use surfine_points::shapes::{Shape, icosphere};
 use surfine_points::{PointSet, Refined};

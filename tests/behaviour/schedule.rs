@@ -18,8 +18,8 @@ use crate::clouds::{
 use crate::curves::{even, uneven};
 use crate::measure::assert_same_bytes;
 
-/// The accurate neighbourhood, the fuzzy one, and the simplified variant, at 3 levels with the paper's loop, which alone has
-/// an order of points.
+/// The accurate neighbourhood, the fuzzy one, and the simplified variant, at 3 levels with the paper's loop, which
+/// alone has an order of points.
 fn variants() -> [(&'static str, RefineParams); 3] {
     let fuzzy = RefineParams { neighborhood: Neighborhood::Fuzzy, ..paper_loop(3) };
     let simplified = RefineParams { simplified: true, ..paper_loop(3) };

@@ -305,7 +305,8 @@ impl Step {
         self.state.candidate_grid.as_ref().expect("the variant sorts its candidates into cells")
     }
 
-    /// The first of the candidates that belong to each point, and one more: these are at home in the first fan that has them.
+    /// The first of the candidates that belong to each point, and one more: these are at home in the first fan that has
+    /// them.
     pub(crate) fn first_candidates(&self) -> Vec<u32> {
         let c = &self.state.candidates;
         let has =

@@ -1,4 +1,5 @@
-//! The insertion kernel, class by class, with private rows and with rows in the arena, on the reference's candidates and classes.
+//! The insertion kernel, class by class, with private rows and with rows in the arena, on the reference's candidates
+//! and classes.
 
 use crate::harness::{
     ARENA_WORDS, Device, INSERTION, Step, compare, compare_equal, constant, device, must,
@@ -7,8 +8,8 @@ use crate::harness::{
 use crate::tolerance::RADIUS;
 use surfine::testing::records::Candidate;
 
-/// States of the candidates and bits of the radii after all classes, each in the order that `arrange` makes of it. Points with
-/// an odd index are left to the rows in the arena, and others only where the private rows are too short.
+/// States of the candidates and bits of the radii after all classes, each in the order that `arrange` makes of it.
+/// Points with an odd index are left to the rows in the arena, and others only where the private rows are too short.
 fn insert(device: &mut Device, step: &Step, arrange: fn(&mut Vec<u32>)) -> (Vec<u32>, Vec<u32>) {
     let (n, count) = (step.level.len(), step.state.candidates.len());
     let mut lists = step.state.classes.members.clone();

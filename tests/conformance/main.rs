@@ -1,8 +1,8 @@
 //! Conformance of the GPU engine to the CPU reference: each kernel alone, fed the reference's inputs, then whole runs.
 //!
-//! In exact mode on a driver that rounds division and square root correctly (lavapipe, `SwiftShader`) everything must be
-//! equal bit for bit. On other adapters the table in `tolerance.rs` holds. Without an adapter the suite fails: install
-//! one (on Debian `mesa-vulkan-drivers`); `tests/run.sh` does.
+//! In exact mode on a driver that rounds division and square root correctly (lavapipe, `SwiftShader`) everything must
+//! be equal bit for bit. On other adapters the table in `tolerance.rs` holds. Without an adapter the suite fails:
+//! install one (on Debian `mesa-vulkan-drivers`); `tests/run.sh` does.
 
 mod boundary;
 mod candidates;

@@ -253,7 +253,8 @@ fn buffers_that_turn_out_too_small_grow() {
 fn too_many_neighbors_for_the_driver_are_an_error_that_names_a_point() {
     let mut device = device();
     let mut cloud = whole().remove(0).0;
-    // One point that has all others around it. The device has it elsewhere: it brings the points into an order of its own.
+    // One point that has all others around it. The device has it elsewhere: it brings the points into an order of its
+    // own.
     const CROWDED: usize = 137;
     cloud.points.radii[CROWDED] = 3.0;
     match device.refiner.refine(&cloud.points, &RefineParams::default()) {
@@ -270,7 +271,7 @@ fn too_many_neighbors_for_the_driver_are_an_error_that_names_a_point() {
 }
 
 /// Pipelines that a refiner has compiled so far: its debug output is the only way to see them.
-fn pipelines(refiner: &Refiner) -> usize {
+pub(crate) fn pipelines(refiner: &Refiner) -> usize {
     format!("{refiner:?}").matches("pipeline: ComputePipeline").count()
 }
 

@@ -189,8 +189,8 @@ fn new_points_neighborhoods_and_radii_are_those_of_the_reference() {
     assert!(found_long, "no row is too long");
 }
 
-/// A chain of candidates, each discarded by the one before: every second one is inserted, in as many rounds as the timing makes
-/// of it.
+/// A chain of candidates, each discarded by the one before: every second one is inserted, in as many rounds as the
+/// timing makes of it.
 const CHAIN: u32 = 100;
 
 fn chain(device: &mut Device, step: &Step) -> Overlaps {

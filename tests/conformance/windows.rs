@@ -2,7 +2,7 @@
 
 use crate::clouds::{Cloud, variants, whole, whole_outlined};
 use crate::harness::{FREE, device};
-use crate::refine::check_with;
+use crate::refine::{check_with, pipelines};
 use surfine::testing::Kernel;
 use surfine::testing::curves::Curves;
 use surfine::testing::records::{Candidate, Params};
@@ -10,7 +10,8 @@ use surfine::testing::shaders::SHADERS;
 use surfine::testing::{Buffer, Commands, Uniforms, constants, read};
 use surfine::{Error, Gpu, Mode, RefineParams, Refiner, wgpu};
 
-/// Bytes that the devices of these tests allow in a binding: a third of the largest buffers, and no multiple of a record.
+/// Bytes that the devices of these tests allow in a binding: a third of the largest buffers, and no multiple of a
+/// record.
 const BINDING: u64 = 100_000;
 
 /// A device with small bindings.
@@ -64,6 +65,24 @@ fn run(
 fn check(refiner: &mut Refiner, cloud: &Cloud, params: &RefineParams, is_exact: bool) {
     let found = check_with(refiner, is_exact, cloud, params);
     assert!(32 * found.points.len() as u64 > 2 * BINDING, "{}: few bindings would do", cloud.name);
+}
+
+#[test]
+fn buffers_that_an_earlier_run_left_long_have_one_binding_for_a_small_cloud() {
+    let gpu = small(wgpu::Features::PASSTHROUGH_SHADERS);
+    if bindings(&gpu) < 32 {
+        // There no cloud that needs windows runs at all, as the next test asks.
+        return;
+    }
+    let mut refiner = Refiner::with_gpu(gpu).expect("the kernels compile");
+    let params = RefineParams { levels: 2, ..Default::default() };
+    let cloud = whole().swap_remove(0).0.points;
+    refiner.refine(&cloud, &params).expect("it fits in windows");
+    let before = pipelines(&refiner);
+    let tiny = surfine_points::shapes::icosphere(1);
+    refiner.refine(&tiny, &RefineParams { levels: 1, ..params }).expect("it fits");
+    // Kernels for other numbers of windows would have been compiled.
+    assert_eq!(pipelines(&refiner), before);
 }
 
 #[test]

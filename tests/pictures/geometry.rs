@@ -96,8 +96,8 @@ fn on_nothing(points: &PointSet) -> Scene {
 }
 
 /// Fails unless the pixels of the unit sphere are covered and no others, but for those within this share of its radius
-/// around the outline. The sphere of 200 points after two levels has discs of up to 0.258 that stick out by 0.033, and a
-/// subpixel in a corner lies 0.35 pixels from the middle.
+/// around the outline. The sphere of 200 points after two levels has discs of up to 0.258 that stick out by 0.033, and
+/// a subpixel in a corner lies 0.35 pixels from the middle.
 #[track_caller]
 pub(crate) fn fills_outline(scene: &Scene, blur: f64) {
     check("outline", scene, |rays, ray, color| match UNIT.place(rays.eye, ray) {
@@ -262,8 +262,8 @@ fn surfaces_that_meet_blend_no_farther_than_their_splats() {
     let scene = colored(&[(1.0, left), (1.0, right)]);
     let balls = [left, right].map(|center| Ball { center: center.as_dvec3(), radius: 1.0 });
     let radius = sphere(2).radii.into_iter().fold(0.0, f32::max);
-    // Discs are pushed back by half of 0.65 of their point's radius; the rest is left for the depth by which discs leave
-    // the curved surface. Measured: 0.079 of 0.098.
+    // Discs are pushed back by half of 0.65 of their point's radius; the rest is left for the depth by which discs
+    // leave the curved surface. Measured: 0.079 of 0.098.
     let reach = 0.6 * 0.65 * f64::from(radius);
     check("blend", &scene, |rays, ray, [r, g, _, opacity]| {
         let hits = balls.map(|ball| ball.hit(rays.eye, ray));

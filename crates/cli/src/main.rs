@@ -26,6 +26,7 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     quiet_mesa();
+    quiet_lost_devices();
     let cli = Cli::from_command_line();
     let result = match &cli.command {
         Command::Refine(args) => refine::run(args),
@@ -46,10 +47,21 @@ fn main() -> ExitCode {
     }
 }
 
+/// Lets the engine alone tell of a device that was lost: wgpu panics there, and the engine makes an error of it.
+fn quiet_lost_devices() {
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        let text = panic.payload().downcast_ref::<String>();
+        if !text.is_some_and(|text| text.starts_with(surfine::LOST)) {
+            usual(panic);
+        }
+    }));
+}
+
 /// Tells a Mesa layer to stay out: it chooses among devices for windows and complains where there are none.
 fn quiet_mesa() {
     if std::env::var_os("NODEVICE_SELECT").is_none() {
-        // SAFETY: this is the first statement of the program, so no other thread reads the environment.
+        // SAFETY: this is called first of all, so no other thread reads the environment.
         unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
     }
 }

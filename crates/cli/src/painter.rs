@@ -49,7 +49,7 @@ impl Painter {
                         Ok(Self::Cpu)
                     })
                 }
-                // One that the environment names is wanted, whatever it is.
+                // One that the environment names must be there; what it refuses to draw the CPU draws.
                 Err(error) if is_named() => Err(error.into()),
                 _ => Ok(Self::Cpu),
             },

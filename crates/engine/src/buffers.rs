@@ -155,8 +155,8 @@ pub(crate) struct Readback {
 }
 
 impl Readback {
-    /// Submits the commands so far, and the copy of several ranges (buffer, offset, bytes) that are not all empty, one after
-    /// the other. All are multiples of 4.
+    /// Submits the commands so far, and the copy of several ranges (buffer, offset, bytes) that are not all empty, one
+    /// after the other. All are multiples of 4.
     pub(crate) fn submit(
         gpu: &Gpu,
         mut encoder: wgpu::CommandEncoder,

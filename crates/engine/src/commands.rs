@@ -1,8 +1,8 @@
 //! Recording of dispatches.
 //!
-//! The functions that may submit are `async`, but nothing is suspended unless the run goes in slices (see `slices.rs`): then
-//! a dispatch that does not fit in the slice is cut, and what is left of it waits for the next one. Parts of a dispatch
-//! follow each other as dispatches do, so results are the same however they are cut.
+//! The functions that may submit are `async`, but nothing is suspended unless the run goes in slices (see `slices.rs`):
+//! then a dispatch that does not fit in the slice is cut, and what is left of it waits for the next one. Parts of a
+//! dispatch follow each other as dispatches do, so results are the same however they are cut.
 
 use crate::buffers::Buffer;
 use crate::kernel::{Kernel, WORKGROUP_SIZE};
@@ -65,7 +65,8 @@ impl<'a> Commands<'a> {
         }
     }
 
-    /// Records one dispatch of at least `invocations` invocations; `words` is what the kernel says of its `dispatch` uniform.
+    /// Records one dispatch of at least `invocations` invocations; `words` is what the kernel says of its `dispatch`
+    /// uniform.
     pub async fn dispatch(&mut self, bound: &Bound, words: [u32; 4], invocations: u32) {
         let mut first = 0;
         while first < invocations && self.failure.is_none() {
@@ -79,8 +80,8 @@ impl<'a> Commands<'a> {
         }
     }
 
-    /// Records a dispatch of as many workgroups as the first three words of a buffer say when it runs, for about so many
-    /// invocations, or few if none are said. It is not cut, but waits for the next slice if these don't fit.
+    /// Records a dispatch of as many workgroups as the first three words of a buffer say when it runs, for about so
+    /// many invocations, or few if none are said. It is not cut, but waits for the next slice if these don't fit.
     pub async fn dispatch_indirect(
         &mut self,
         bound: &Bound,

@@ -36,8 +36,8 @@ pub const SEGMENT_WORDS: usize = 4;
 /// The curves of a step.
 #[derive(Clone, Debug)]
 pub struct Table {
-    /// The records (those of new points last), the segments, and crease segments by cell: the first entry of each cell and one more,
-    /// then the entries.
+    /// The records (those of new points last), the segments, and crease segments by cell: the first entry of each cell
+    /// and one more, then the entries.
     pub words: Vec<u32>,
     /// The grid of the crease segments.
     pub shape: GridShape,

@@ -28,7 +28,7 @@ pub enum Error {
     /// The device can't hold what the refinement needs.
     #[error(
         "{what} need {need} bytes, more than the {have} that {adapter} allows in one buffer: \
-         use fewer levels, split the cloud, or use the CPU"
+         lower generous radii, use fewer levels, split the cloud, or use the CPU"
     )]
     Limit {
         /// What needs the memory.
@@ -124,8 +124,8 @@ pub enum Error {
 }
 
 impl Error {
-    /// The error with the index of the input in place of that of the device, which has its points in `order`; the records of further
-    /// normals follow them and belong to `owners`.
+    /// The error with the index of the input in place of that of the device, which has its points in `order`; the
+    /// records of further normals follow them and belong to `owners`.
     pub(crate) fn of_input(self, order: &[u32], owners: &[u32]) -> Self {
         let Self::Crowded { vertex: Some(record), level, adapter } = self else { return self };
         let point = if record < order.len() {

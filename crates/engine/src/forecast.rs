@@ -1,9 +1,9 @@
 //! What a refinement will need, told before anything is computed.
 //!
-//! The sizes follow the stages: each step reserves some buffers by its number of points, which is sure, and others by what
-//! it finds, which is not. On an even closed surface a point has two triangles and six neighbours, and each triangle gives a new
-//! point: buffers are then as foretold, within a hundredth. What depends on the sampling is the memory of long rows: points with many
-//! neighbours, where radii are generous or spacings differ.
+//! The sizes follow the stages: each step reserves some buffers by its number of points, which is sure, and others by
+//! what it finds, which is not. On an even closed surface a point has two triangles and six neighbours, and each
+//! triangle gives a new point: buffers are then as foretold, within a hundredth. What depends on the sampling is the
+//! memory of long rows: points with many neighbours, where radii are generous or spacings differ.
 
 use crate::buffers::with_headroom;
 use crate::records::{Candidate, Fan, Point};
@@ -12,7 +12,8 @@ use crate::{Error, Gpu};
 use surfine_points::{Boundary, GridShape, RefineParams, Vec3};
 
 const POINT: u64 = size_of::<Point>() as u64;
-/// Bytes of long rows for each point of the first step, where all have far too large radii: half as large again as fit, on random points.
+/// Bytes of long rows for each point of the first step, where all have far too large radii: half as large again as fit,
+/// on random points.
 const FIRST_LONG_ROWS: u64 = 4000;
 /// The same for later steps, on random points: by then radii fit.
 const LONG_ROWS: u64 = 900;
@@ -30,8 +31,9 @@ pub struct Forecast {
     pub largest_buffer: (&'static str, u64),
 }
 
-/// Points before the first step and after each one, on a closed surface: by Euler's formula it has two triangles for each
-/// point, but for four in all. Random points were measured to grow by 2.3 to 2.8 instead of 3, open surfaces by 2.9.
+/// Points before the first step and after each one, on a closed surface: by Euler's formula it has two triangles for
+/// each point, but for four in all. Random points were measured to grow by 2.3 to 2.8 instead of 3, open surfaces by
+/// 2.9.
 pub fn points_by_level(points: usize, levels: u32) -> Vec<u64> {
     let grown = |n: &u64| Some(n.saturating_mul(3).saturating_sub(4).max(*n));
     std::iter::successors(Some(points as u64), grown).take(levels as usize + 1).collect()
@@ -75,8 +77,8 @@ fn long_rows(sizes: &[u64], sizing: &Sizing) -> u64 {
     steps.map(bytes).max().unwrap_or(0)
 }
 
-/// Refuses a step of so many records if a buffer that it surely needs is larger than the adapter allows: each later step
-/// would need it too. What depends on the sampling may still fail later.
+/// Refuses a step of so many records if a buffer that it surely needs is larger than the adapter allows: each later
+/// step would need it too. What depends on the sampling may still fail later.
 ///
 /// # Errors
 /// [`Error::TooLarge`].

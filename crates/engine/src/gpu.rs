@@ -2,17 +2,20 @@
 
 use crate::Error;
 use crate::windows::RECORDS;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
 /// How long the host waits for the device before it gives up: a hang must not be for ever.
 const TIMEOUT: Duration = Duration::from_secs(600);
 
+/// How the text of wgpu's panics begins where the device was lost.
+pub const LOST: &str = "Error in Device::poll";
+
 /// The most storage buffers that a kernel has.
 const KERNEL_BUFFERS: u32 = 10;
-/// All buffers of a kernel together are no longer than so many times the largest of them, on even clouds: 2.5 times by default, 3.1
-/// times by the paper's loop.
+/// All buffers of a kernel together are no longer than so many times the largest of them, on even clouds: 2.5 times by
+/// default, 3.1 times by the paper's loop.
 const BUFFERS_AT_ONCE: u64 = 4;
 
 /// How kernels were compiled.
@@ -127,13 +130,15 @@ impl Gpu {
     /// The largest buffer that a kernel can use through one binding, bytes.
     pub fn largest_binding(&self) -> u64 {
         let limits = self.device.limits();
-        // Metal allows more, but the checks of indices count bytes in 32 bits there.
+        // wgpu itself allows no more on Vulkan and Direct3D. On Metal it does, but its checks of indices count bytes in
+        // 32 bits.
         let most = limits.max_storage_buffer_binding_size.min(i32::MAX as u64);
         // Buffers are rounded up to 16 bytes, and drivers' limits need not be multiples of that.
         most.min(limits.max_buffer_size) & !15
     }
 
-    /// The largest buffer of a refinement, bytes: longer ones than a binding have several, as far as a stage may have so many.
+    /// The largest buffer of a refinement, bytes: longer ones than a binding have several, as far as a stage may have
+    /// so many.
     pub fn largest_buffer(&self) -> u64 {
         let limits = self.device.limits();
         let spare = limits.max_storage_buffers_per_shader_stage.saturating_sub(KERNEL_BUFFERS);
@@ -179,14 +184,13 @@ impl Gpu {
 
     /// Lets the device's callbacks run.
     pub(crate) fn poll(&self, how: wgpu::PollType) -> Result<(), Error> {
-        // wgpu panics where the device was lost.
+        // wgpu panics where the device was lost. Callbacks of the application run here too: their panics are its own.
         match catch_unwind(AssertUnwindSafe(|| self.device.poll(how))) {
             Ok(polled) => polled.map(|_| ()).map_err(|e| self.error(&e)),
-            Err(panic) => {
-                let text = panic.downcast_ref::<String>().map(String::as_str);
-                let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
-                Err(self.error(&text.unwrap_or("the device was lost")))
-            }
+            Err(panic) => match panic.downcast_ref::<String>() {
+                Some(text) if text.starts_with(LOST) => Err(self.error(text)),
+                _ => resume_unwind(panic),
+            },
         }
     }
 

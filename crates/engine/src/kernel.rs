@@ -215,8 +215,9 @@ pub fn exact_spirv(
 /// Words of the SPIR-V header.
 const HEADER: usize = 5;
 
-/// Puts `OpDecorate id NoContraction` for every float operation before the first type, and leaves private variables without
-/// their zeros: kernels write before they read, and software drivers take seconds to compile the zeros of a row.
+/// Puts `OpDecorate id NoContraction` for every float operation before the first type, and leaves private variables
+/// without their zeros: kernels write before they read, and software drivers take seconds to compile the zeros of a
+/// row.
 fn forbid_contraction(words: &[u32]) -> Vec<u32> {
     const OP_DECORATE: u32 = 71;
     const NO_CONTRACTION: u32 = 42;

@@ -2,9 +2,9 @@
 //! and Paulin 2005) as compute kernels.
 //!
 //! [`Refiner`] holds a device with compiled kernels and buffers, and refines one cloud after the other, in one go or in
-//! [`Slices`]. Input points stay as they are, new points lie on the smooth surface through them. All else here is what it takes
-//! and gives: [`Gpu`] and [`choose_adapter`] to choose a device, [`PointSet`] and [`RefineParams`] for what is refined and how,
-//! [`Refined`] on the host and [`GpuRefined`] on the device, and [`Forecast`] of what a run will need.
+//! [`Slices`]. Input points stay as they are, new points lie on the smooth surface through them. All else here is what
+//! it takes and gives: [`Gpu`] and [`choose_adapter`] to choose a device, [`PointSet`] and [`RefineParams`] for what is
+//! refined and how, [`Refined`] on the host and [`GpuRefined`] on the device, and [`Forecast`] of what a run will need.
 //!
 //! ```no_run
 //! use surfine::{PointSet, RefineParams, Refiner};
@@ -43,7 +43,7 @@ mod windows;
 
 pub use error::Error;
 pub use forecast::{Forecast, points_by_level};
-pub use gpu::{Gpu, Mode, adapters, choose_adapter};
+pub use gpu::{Gpu, LOST, Mode, adapters, choose_adapter};
 pub use profile::KernelTime;
 pub use records::Point;
 pub use refiner::{GpuRefined, Refiner};

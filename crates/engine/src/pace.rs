@@ -40,8 +40,8 @@ impl Pace {
         self.left = self.whole;
     }
 
-    /// Takes what fits of so many invocations from the slice: all of them, or whole workgroups; none if it is full. A slice
-    /// that nothing was taken from has room for a workgroup, however small it is.
+    /// Takes what fits of so many invocations from the slice: all of them, or whole workgroups; none if it is full. A
+    /// slice that nothing was taken from has room for a workgroup, however small it is.
     pub(crate) fn take(&mut self, kernel: &'static str, wanted: u32) -> u32 {
         let seconds = self.seconds(kernel);
         let fitting = (self.left - DISPATCH).max(0.0) / seconds;
@@ -68,8 +68,8 @@ impl Pace {
         f64::from(invocations) * self.seconds(kernel) + DISPATCH
     }
 
-    /// Notes what a dispatch took. Small ones say little about large ones, but what fills a slice counts, whatever larger ones
-    /// there were.
+    /// Notes what a dispatch took. Small ones say little about large ones, but what fills a slice counts, whatever
+    /// larger ones there were.
     pub(crate) fn learn(&mut self, kernel: &'static str, invocations: u32, seconds: f64) {
         let whole = self.whole;
         let rate = match self.rates.iter().position(|r| r.kernel == kernel) {

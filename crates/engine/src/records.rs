@@ -14,8 +14,8 @@ pub struct Point {
     pub radius: f32,
     /// Unit normal.
     pub normal: [f32; 3],
-    /// Low byte: the refinement step that inserted the point; 0 for input points. Above it one more than the point's record
-    /// if it lies on a crease or boundary.
+    /// Low byte: the refinement step that inserted the point; 0 for input points. Above it one more than the point's
+    /// record if it lies on a crease or boundary.
     pub level: u32,
 }
 
@@ -150,6 +150,7 @@ pub struct Counters {
     pub around: u32,
     pub around_high: u32,
     pub mirrored: u32,
+    pub mirrored_high: u32,
     pub classes: u32,
     pub isolated: u32,
     pub ball_low: u32,

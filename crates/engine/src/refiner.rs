@@ -33,26 +33,28 @@ pub struct Refiner {
 #[derive(Debug)]
 pub struct GpuRefined {
     /// [`Point`](crate::Point)s of 32 bytes: position at offset 0, radius at 12, normal at 16, level in the byte at
-    /// 28. Usable as vertex or storage buffer and as copy source; it may be longer than [`GpuRefined::len`] of them, and than the
-    /// device allows in one binding. The input comes first, in the order of `ordered`. A point on a crease is one of these
-    /// records for each of its sides: those of further normals follow the input points, and the new ones follow each other.
+    /// 28. Usable as vertex or storage buffer and as copy source; it may be longer than [`GpuRefined::len`] of them,
+    /// and than the device allows in one binding. The input comes first, in the order of `ordered`. A point on a crease
+    /// is one of these records for each of its sides: those of further normals follow the input points, and the new
+    /// ones follow each other.
     pub points: wgpu::Buffer,
-    /// The three corners of each new record's triangle, `u32` indices into `points`; entry 0 belongs to the first new one. A new
-    /// point on a crease or boundary lies between two: the nearer one stands there twice.
+    /// The three corners of each new record's triangle, `u32` indices into `points`; entry 0 belongs to the first new
+    /// one. A new point on a crease or boundary lies between two: the nearer one stands there twice.
     pub parents: wgpu::Buffer,
     /// Number of records at each level: entry 0 is the input, the last entry is all of them.
     pub level_sizes: Vec<usize>,
-    /// Radii of the records of each level, in the order of `points`, if `RefineParams::keep_radii` asks for them; else empty.
+    /// Radii of the records of each level, in the order of `points`, if `RefineParams::keep_radii` asks for them; else
+    /// empty.
     pub level_radii: Vec<Vec<f32>>,
     /// What happened at each refinement step, in records: a point on a crease counts once for each side.
     pub reports: Vec<LevelReport>,
     /// Creases and boundaries of the input.
     pub curves: CurveCounts,
-    /// Bytes of the refiner's buffers when the last step ended, the result included. A buffer that grows and keeps its content is
-    /// there twice for a moment: at most the points before the last step come on top.
+    /// Bytes of the refiner's buffers when the last step ended, the result included. A buffer that grows and keeps its
+    /// content is there twice for a moment: at most the points before the last step come on top.
     pub device_bytes: u64,
-    /// The input in the order of the device, with the index of each point in the caller's order: the refiner puts points that
-    /// are near each other next to each other.
+    /// The input in the order of the device, with the index of each point in the caller's order: the refiner puts
+    /// points that are near each other next to each other.
     pub ordered: Ordered,
     /// The same with one record for each normal.
     pub(crate) records: Records,
@@ -82,8 +84,9 @@ impl Refiner {
         Self::with_gpu(Gpu::open(&choose_adapter(adapter)?)?)
     }
 
-    /// Uses the caller's device. On a Vulkan device that was opened with `wgpu::Features::PASSTHROUGH_SHADERS`, and whose driver
-    /// rounds divisions and square roots correctly, results have the bytes of the CPU reference; see [`Mode`](crate::Mode).
+    /// Uses the caller's device. On a Vulkan device that was opened with `wgpu::Features::PASSTHROUGH_SHADERS`, and
+    /// whose driver rounds divisions and square roots correctly, results have the bytes of the CPU reference; see
+    /// [`Mode`](crate::Mode).
     ///
     /// # Errors
     /// A kernel is refused, for instance because the device was opened with limits below ten storage buffers a stage.
@@ -114,8 +117,8 @@ impl Refiner {
         self.compile(constants(params, Curves::None))
     }
 
-    /// [`Refiner::prepare`] for clouds with creases or boundaries, which have kernels of their own: else these are compiled when
-    /// the first one is met.
+    /// [`Refiner::prepare`] for clouds with creases or boundaries, which have kernels of their own: else these are
+    /// compiled when the first one is met.
     ///
     /// # Errors
     /// A kernel is refused.
@@ -138,11 +141,12 @@ impl Refiner {
         self.sizing = sizing;
     }
 
-    /// Begins to take the times of kernels on the device, or ends it. The host then waits for every submission, so whole runs
-    /// take a little longer.
+    /// Begins to take the times of kernels on the device, or ends it. The host then waits for every submission, so
+    /// whole runs take a little longer.
     ///
     /// # Errors
-    /// The device was opened without `wgpu::Features::TIMESTAMP_QUERY`; [`Gpu::open`] asks for it where the adapter has it.
+    /// The device was opened without `wgpu::Features::TIMESTAMP_QUERY`; [`Gpu::open`] asks for it where the adapter has
+    /// it.
     pub fn set_profiling(&mut self, on: bool) -> Result<(), Error> {
         self.uniforms.set_profiling(&self.gpu, on)
     }
@@ -178,7 +182,8 @@ impl Refiner {
     ///
     /// # Errors
     /// * [`Error::Points`], [`Error::Params`]: unfit input.
-    /// * [`Error::TooLarge`], [`Error::Limit`], [`Error::Bindings`], [`Error::Curves`]: the device has too little room.
+    /// * [`Error::TooLarge`], [`Error::Limit`], [`Error::Bindings`]: the device has too little room.
+    /// * [`Error::Curves`]: more points on creases and boundaries than a word numbers beside the level.
     /// * [`Error::Crowded`]: the driver ends long loops, as software drivers do.
     /// * [`Error::Kernel`], [`Error::Device`]: the driver fails, or the device was lost.
     pub fn refine(&mut self, points: &PointSet, params: &RefineParams) -> Result<Refined, Error> {

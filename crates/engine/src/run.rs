@@ -70,8 +70,8 @@ fn cloud(records: &Records) -> Cloud<'_> {
 }
 
 impl Refiner {
-    /// A whole run. If the uniforms have a pace, it is suspended wherever it waits for the device, and ends when that has
-    /// finished.
+    /// A whole run. If the uniforms have a pace, it is suspended wherever it waits for the device, and ends when that
+    /// has finished.
     pub(crate) async fn run(
         &mut self,
         points: &PointSet,

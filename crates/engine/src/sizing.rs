@@ -13,10 +13,10 @@ pub struct Sizing {
     pub chunk: u32,
     /// Points of a class that are refined together.
     pub part: u32,
-    /// Entries of lists that are provided for each point before their need is known: as many candidates are around a point, by
-    /// the paper's loop. Other lists have their part of it.
+    /// Entries of lists that are provided for each point before their need is known: as many candidates are around a
+    /// point, by the paper's loop. Other lists have their part of it.
     pub entries: u32,
-    /// Rounds of the selection, or of the colouring, that are recorded together.
+    /// Rounds of the colouring that are recorded together; those of the selection too, but three at most.
     pub rounds: u32,
 }
 
@@ -32,7 +32,8 @@ impl Sizing {
         points.saturating_mul(self.entries.min(7).into())
     }
 
-    /// Links from candidates to those that discard them: about one for each point, where .02 to .1 for each candidate were seen.
+    /// Links from candidates to those that discard them: about one for each point, where .02 to .1 for each candidate
+    /// were seen.
     pub(crate) fn links(&self, points: u64) -> u64 {
         points.saturating_mul(self.entries.into()) / 16
     }
@@ -47,7 +48,8 @@ impl Sizing {
         points.saturating_mul((self.entries / 12).into())
     }
 
-    /// Points that share the arena, if the longest row has so many words.
+    /// Points that share the arena, if the longest row has so many words: one for each neighbour, for `conflicts`
+    /// three.
     pub(crate) fn chunk_of(&self, longest_row: u32) -> u32 {
         // A point with k neighbours looks at k² pairs. Drivers end what takes them seconds; a workgroup is the least.
         const PAIRS: u64 = 1 << 36;
@@ -57,8 +59,8 @@ impl Sizing {
     }
 }
 
-/// Points whose rings may leave gaps that are read back: a sixteenth of them where few lie on boundaries, all where a property
-/// says which do.
+/// Points whose rings may leave gaps that are read back: a sixteenth of them where few lie on boundaries, all where a
+/// property says which do.
 pub(crate) fn boundary_gaps(params: &RefineParams, points: u64) -> u64 {
     match params.boundary {
         Boundary::None => 0,
@@ -70,6 +72,11 @@ pub(crate) fn boundary_gaps(params: &RefineParams, points: u64) -> u64 {
 /// Radii of a step: of the points, of the candidates, and of the points as they were before `next_ring`.
 pub(crate) fn radii(points: u64, candidates: u64) -> u64 {
     points.saturating_mul(2).saturating_add(candidates)
+}
+
+/// What kernels counted in two words.
+pub(crate) fn counted(low: u32, high: u32) -> u64 {
+    u64::from(high) << 32 | u64::from(low)
 }
 
 /// Whole words that kernels see of a buffer.

@@ -12,8 +12,9 @@ use std::task::{Context, Poll, Waker};
 use std::time::Duration;
 use surfine_points::{PointSet, Progress, RefineParams};
 
-/// A run that goes in slices: [`Refiner::begin`] makes it, [`Slices::advance`] drives it, and [`Slices::into_refiner`] gives
-/// the refiner back, before the end too. It borrows nothing and is `Send`, so that it can be kept from frame to frame.
+/// A run that goes in slices: [`Refiner::begin`] makes it, [`Slices::advance`] drives it, and [`Slices::into_refiner`]
+/// gives the refiner back, before the end too. It borrows nothing and is `Send`, so that it can be kept from frame to
+/// frame.
 ///
 /// ```no_run
 /// use std::time::Duration;
@@ -64,22 +65,24 @@ impl Refiner {
 }
 
 impl Slices {
-    /// Goes on: submits work that takes the device about as long as the budget, and returns without waiting for it. While the
-    /// work of an earlier call still runs, nothing is submitted. The result comes when all work is done.
+    /// Goes on: submits work that takes the device about as long as the budget, and returns without waiting for it.
+    /// While the work of an earlier call still runs, nothing is submitted. The result comes when all work is done.
     ///
-    /// How long kernels take is learned from slice to slice, beginning with small parts; the refiner remembers it for later
-    /// runs. Devices with `wgpu::Features::TIMESTAMP_QUERY` tell it. On others a slice counts until the call, or another poll
-    /// of the device, that finds it finished: there slices stay small unless calls follow each other faster than the budget.
+    /// How long kernels take is learned from slice to slice, beginning with small parts; the refiner remembers it for
+    /// later runs. Devices with `wgpu::Features::TIMESTAMP_QUERY` tell it. On others a slice counts until the call, or
+    /// another poll of the device, that finds it finished: there slices stay small unless calls follow each other
+    /// faster than the budget.
     ///
     /// Some work is never cut:
     ///
-    /// * the host's part: the first call checks, orders and uploads the points, 0.15 to 0.3 µs for each (it can be made on
-    ///   another thread), and each step lays out creases and boundaries in one call;
+    /// * the host's part: the first call checks, orders and uploads the points, 0.15 to 0.3 µs for each (it can be made
+    ///   on another thread), and each step lays out creases and boundaries in one call;
     /// * buffers that grow, which the driver fills with zeros;
-    /// * kernels that [`Refiner::prepare`] or [`Refiner::prepare_curves`] did not compile, and those for buffers longer than a
-    ///   binding: they are compiled in the call that needs them;
-    /// * with `simplified` the contested candidates, at most about a third; by the paper's loop a round of the colouring, a 32nd of
-    ///   the points.
+    /// * kernels that [`Refiner::prepare`] or [`Refiner::prepare_curves`] did not compile, and those for buffers longer
+    ///   than a binding: they are compiled in the call that needs them;
+    /// * the rounds of the selection that few candidates wait for;
+    /// * with `simplified` the contested candidates, at most about a third; by the paper's loop a round of the
+    ///   colouring, a 32nd of the points.
     ///
     /// # Errors
     /// As [`Refiner::refine`]. The run has ended then.
@@ -109,7 +112,8 @@ impl Slices {
         *lock(&self.progress)
     }
 
-    /// Ends the run, if it has not ended, and gives the refiner back, fit for the next one. What was submitted still runs.
+    /// Ends the run, if it has not ended, and gives the refiner back, fit for the next one. What was submitted still
+    /// runs.
     pub fn into_refiner(self) -> Refiner {
         drop(self.run);
         lock(&self.home).take().expect("the end of a run brings the refiner home")

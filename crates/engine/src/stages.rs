@@ -1,5 +1,5 @@
-//! The stages of a refinement step, as dispatches of their kernels: one file a stage, in which [`Step`](crate::step::Step) gets a
-//! method of that name.
+//! The stages of a refinement step, as dispatches of their kernels: one file a stage, in which
+//! [`Step`](crate::step::Step) gets a method of that name.
 
 mod boundary;
 mod candidates;

@@ -1,8 +1,9 @@
-//! A refinement step on the device: its buffers and kernels, and what all of its stages do. The stages are in `stages/`.
+//! A refinement step on the device: its buffers and kernels, and what all of its stages do. The stages are in
+//! `stages/`.
 //!
-//! Nothing that grows with the cloud is read back, but for the gaps of possible boundary points: only [`Counters`], ring and class
-//! totals and the number of new points, since buffers are sized on the host. A stage whose buffers turn out too small runs again
-//! with larger ones.
+//! Nothing that grows with the cloud is read back, but for the gaps of possible boundary points: only [`Counters`],
+//! ring and class totals and the number of new points, since buffers are sized on the host. A stage whose buffers turn
+//! out too small runs again with larger ones.
 
 use crate::buffers::Buffer;
 use crate::commands::Commands;
@@ -180,12 +181,29 @@ impl Step<'_> {
         Error::Crowded { vertex: Some(record), level, adapter }
     }
 
+    /// The bytes of a list of so many entries.
+    ///
+    /// # Errors
+    /// Kernels cannot count that many.
+    pub(crate) fn countable(
+        &self,
+        what: &'static str,
+        entry: u64,
+        entries: u64,
+    ) -> Result<u64, Error> {
+        let (need, have) = (entry.saturating_mul(entries), entry * u64::from(u32::MAX));
+        if need > have {
+            return Err(Error::Limit { what, need, have, adapter: self.gpu.name.clone() });
+        }
+        Ok(need)
+    }
+
     pub(crate) fn cells(&self) -> u32 {
         1 << self.params.bits.iter().sum::<u32>()
     }
 
-    /// Runs the variant of a kernel with rows in the arena for what was left over, in parts that fit there. `longest_row` is the
-    /// longest row that will be, as far as it is known.
+    /// Runs the variant of a kernel with rows in the arena for what was left over, in parts that fit there.
+    /// `longest_row` is the longest row that will be, as far as it is known.
     pub(crate) async fn run_large(
         &mut self,
         kernel: &str,

@@ -151,8 +151,8 @@ impl Uniforms {
         self.timed().dispatches.len()
     }
 
-    /// Waits for everything that was submitted, and takes the times of its dispatches where they are wanted. A run in slices
-    /// is suspended meanwhile.
+    /// Waits for everything that was submitted, and takes the times of its dispatches where they are wanted. A run in
+    /// slices is suspended meanwhile.
     ///
     /// # Errors
     /// The device was lost or took too long.
@@ -164,13 +164,7 @@ impl Uniforms {
             if self.is_paced() { done(gpu).await? } else { gpu.wait().map(|()| Instant::now())? };
         let times = match stamps {
             Some((stamps, readback)) => stamps.times(&readback.bytes(gpu)?),
-            None => Vec::new(),
-        };
-        // Stamps that all say nothing are no better than none.
-        let times = if times.iter().all(Duration::is_zero) {
-            self.shares(&dispatches, begin.map_or(Duration::ZERO, |begin| end - begin))
-        } else {
-            times
+            None => self.shares(&dispatches, begin.map_or(Duration::ZERO, |begin| end - begin)),
         };
         for ((kernel, invocations), time) in dispatches.into_iter().zip(times) {
             self.profile.iter().for_each(|profile| profile.add(kernel, time));

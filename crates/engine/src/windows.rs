@@ -1,8 +1,9 @@
 //! Buffers that are longer than a binding may be.
 //!
-//! Drivers bind 128 MiB or 2 GiB at most; buffers can be larger. A kernel sees such a buffer through several bindings, its windows,
-//! which all have the same number of bytes but for the last one. The WGSL says nothing of them: where an array has several, each
-//! access to one of its elements becomes a call of a function that chooses the window by the index.
+//! Drivers bind 128 MiB or 2 GiB at most; buffers can be larger. A kernel sees such a buffer through several bindings,
+//! its windows, which all have the same number of bytes but for the last one. The WGSL says nothing of them: where an
+//! array has several, each access to one of its elements becomes a call of a function that chooses the window by the
+//! index.
 
 mod accessor;
 
@@ -47,14 +48,15 @@ enum Access {
     Atomic(AtomicFunction),
 }
 
-/// Gives arrays more bindings: as many windows as `counts` says of each binding from 2 on. Those after the first follow the last
-/// binding of the module, in the order of the arrays.
+/// Gives arrays more bindings: as many windows as `counts` says of each binding from 2 on. Those after the first follow
+/// the last binding of the module, in the order of the arrays.
 ///
 /// # Errors
 /// What should have several windows is no array of any length, or is used otherwise than element by element.
 pub(crate) fn split(module: &mut Module, counts: &[u32], bytes: u64) -> Result<(), String> {
     let arrays = declare(module, counts, bytes)?;
-    // Functions stand before those that call them. So all are gone through twice: to make the accessors, and to call them.
+    // Functions stand before those that call them. So all are gone through twice: to make the accessors, and to call
+    // them.
     let mut functions = Arena::new();
     let old: Vec<_> = module.functions.drain().map(|(_, function, _)| function).collect();
     for function in old.iter().chain(module.entry_points.iter().map(|entry| &entry.function)) {

@@ -30,6 +30,14 @@ pub enum Error {
     Points(Invalid),
     /// A parameter is out of its range.
     Params(ParamError),
+    /// The lists around the points of a step have more entries than 32 bits number: radii are far too large, or there are
+    /// hundreds of millions of points.
+    Lists {
+        /// The refinement step, from 1.
+        step: u32,
+        /// Points before the step, each normal of a point on a crease counted.
+        points: usize,
+    },
 }
 
 impl fmt::Display for Error {
@@ -37,6 +45,11 @@ impl fmt::Display for Error {
         match self {
             Self::Points(e) => e.fmt(f),
             Self::Params(e) => e.fmt(f),
+            Self::Lists { step, points } => write!(
+                f,
+                "step {step} has {points} points to refine, and the lists around them are too long for indices of 32 \
+                 bits: lower generous radii, use fewer levels, or split the cloud"
+            ),
         }
     }
 }
@@ -102,7 +115,7 @@ pub fn refine_with(
         }
         level.begin_step(params.rules);
         let stages = run_stages(&level, sight, params, order, &mut clock);
-        let (state, mut report) = stages.map_err(|TooLong| Invalid::TooMany(size))?;
+        let (state, mut report) = stages.map_err(|TooLong| Error::Lists { step, points: size })?;
         let parents = clock.time("commit", || commit(&mut level, &state));
         report.stages = clock.times;
         report.points_out = level.len();

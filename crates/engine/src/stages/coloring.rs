@@ -3,11 +3,12 @@
 use crate::Error;
 use crate::commands::Commands;
 use crate::records::Counters;
-use crate::sizing::{WORD, items_of, words_of};
+use crate::sizing::{WORD, counted, items_of, words_of};
 use crate::step::Step;
 use std::ops::Range;
 
-/// Ranges of priorities, as in `shaders/shared/priority.wgsl`: as many rounds of colouring have points that were not there before.
+/// Ranges of priorities, as in `shaders/shared/priority.wgsl`: as many rounds of colouring have points that were not
+/// there before.
 const RANGES: u32 = 32;
 
 impl Step<'_> {
@@ -27,9 +28,10 @@ impl Step<'_> {
             self.sort_by_priority().await?;
             let mut round = RANGES + self.sizing.rounds;
             let (mut counters, mut left) = self.run_rounds(0..round).await?;
-            let links = counters.mirrored;
-            if links > self.params.mirror_links {
-                self.buffers.mirror_links.reserve(self.gpu, 2 * WORD * u64::from(links))?;
+            let links = counted(counters.mirrored, counters.mirrored_high);
+            if links > self.params.mirror_links.into() {
+                let bytes = self.countable("links of conflicts", 2 * WORD, links)?;
+                self.buffers.mirror_links.reserve(self.gpu, bytes)?;
                 continue;
             }
             while left > 0 {

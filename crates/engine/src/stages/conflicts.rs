@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::buffers::Buffer;
 use crate::records::Counters;
-use crate::sizing::{WORD, words_of};
+use crate::sizing::{WORD, counted, words_of};
 use crate::stages::candidates::WIDEST;
 use crate::step::{Buffers, CONFLICTS, Step};
 
@@ -29,11 +29,12 @@ impl Step<'_> {
             if counters.left_over & CONFLICTS != 0 {
                 counters = self.run_large("conflicts_large", buffers, counters.longest_row).await?;
             }
-            let need = u64::from(counters.around_high) << 32 | u64::from(counters.around);
-            if need <= self.params.around_entries.into() {
+            let entries = counted(counters.around, counters.around_high);
+            if entries <= self.params.around_entries.into() {
                 return Ok(counters);
             }
-            self.buffers.around.reserve(self.gpu, WORD * need)?;
+            let bytes = self.countable("lists of candidates around points", WORD, entries)?;
+            self.buffers.around.reserve(self.gpu, bytes)?;
         }
     }
 }

@@ -6,8 +6,8 @@ use crate::sizing::{WORD, radii, words_of};
 use crate::step::{INSERTION, Step};
 
 impl Step<'_> {
-    /// `insertion`, class by class. `starts` is what [`Step::coloring`] returned, `left_over` what [`Step::conflicts`] did.
-    /// Returns the number of new points.
+    /// `insertion`, class by class. `starts` is what [`Step::coloring`] returned, `left_over` says what
+    /// [`Step::conflicts`] left over. Returns the number of new points.
     pub(crate) async fn insertion(&mut self, starts: &[u32], left_over: u32) -> Result<u32, Error> {
         let (n, candidates) = (u64::from(self.params.points), u64::from(self.params.candidates));
         self.buffers.next_radii.reserve(self.gpu, WORD * radii(n, candidates))?;

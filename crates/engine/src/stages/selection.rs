@@ -3,16 +3,17 @@
 use crate::Error;
 use crate::commands::Commands;
 use crate::records::Counters;
-use crate::sizing::{WORD, items_of, radii, words_of};
+use crate::sizing::{WORD, counted, items_of, radii, words_of};
 use crate::step::Step;
 use std::ops::Range;
 
-/// Rounds that have a dispatch of their own before one workgroup does the rest: after three of them a few candidates wait, or none.
+/// Rounds that have a dispatch of their own before one workgroup does the rest: after three of them a few candidates
+/// wait, or none.
 const ROUNDS: u32 = 3;
 
 impl Step<'_> {
-    /// `selection`: which candidates are inserted, and the radii of all points. Returns the number of new points, and the
-    /// counters, which tell what is left over.
+    /// `selection`: which candidates are inserted, and the radii of all points. Returns the number of new points, and
+    /// the counters, which tell what is left over.
     pub(crate) async fn selection(&mut self) -> Result<(u32, Counters), Error> {
         let (n, candidates) = (u64::from(self.params.points), u64::from(self.params.candidates));
         if !self.asks_contested_alone {
@@ -34,8 +35,9 @@ impl Step<'_> {
             let each = self.sizing.rounds.min(ROUNDS);
             let mut rounds = first..first + each;
             let (counters, mut left) = self.run_selection(rounds.clone()).await?;
-            if counters.mirrored > self.params.mirror_links {
-                let bytes = 2 * WORD * u64::from(counters.mirrored);
+            let links = counted(counters.mirrored, counters.mirrored_high);
+            if links > self.params.mirror_links.into() {
+                let bytes = self.countable("links between candidates", 2 * WORD, links)?;
                 self.buffers.mirror_links.reserve(self.gpu, bytes)?;
                 continue;
             }
@@ -89,7 +91,8 @@ impl Step<'_> {
         commands.dispatch_indirect(&links, [0; 4], &b.workgroups, self.waiting_for(1)).await;
     }
 
-    /// About how many candidates wait for a round. Up to a third are contested, on random points; of them few wait for others.
+    /// About how many candidates wait for a round. Up to a third are contested, on random points; of them few wait for
+    /// others.
     fn waiting_for(&self, round: u32) -> u32 {
         if self.asks_contested_alone && round == 1 { self.params.candidates / 8 } else { 0 }
     }
