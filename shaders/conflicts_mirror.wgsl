@@ -25,11 +25,8 @@ fn conflicts_mirror(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_w
         if found_before(q, p) {
             continue;
         }
-        let link = atomicAdd(&counters.mirrored, 1u);
-        if link == NONE {
-            atomicAdd(&counters.mirrored_high, 1u);
-        }
-        if link < params.mirror_links && atomicLoad(&counters.mirrored_high) == 0u {
+        let link = new_link();
+        if link != NONE {
             mirror_links[link] = vec2(p, atomicExchange(&mirror_heads[q], link + 1u));
         }
     }

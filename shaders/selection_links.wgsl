@@ -58,13 +58,10 @@ fn discards(h: u32, x: Contested) -> bool {
         && (candidates[h].state == INSERTED || precedes(h, x.id));
 }
 
-/// Too small a buffer is seen by the host in the counters, and the stage runs again.
+/// Links a candidate to one that discards it, before its other links, and returns one more than the first of them.
 fn add_link(h: u32, next: u32) -> u32 {
-    let link = atomicAdd(&counters.mirrored, 1u);
+    let link = new_link();
     if link == NONE {
-        atomicAdd(&counters.mirrored_high, 1u);
-    }
-    if link >= params.mirror_links || atomicLoad(&counters.mirrored_high) > 0u {
         return next;
     }
     links[link] = vec2(h, next);

@@ -97,13 +97,9 @@ fn keep_seen(center: Seen, near_curves: bool, sphere: f32, size: u32) -> u32 {
     return seen;
 }
 
-/// Too small a buffer is seen by the host in the counters, and the stage runs again.
 fn add_link(x: u32, h: u32) {
-    let link = atomicAdd(&counters.mirrored, 1u);
-    if link == NONE {
-        atomicAdd(&counters.mirrored_high, 1u);
-    }
-    if link < params.mirror_links && atomicLoad(&counters.mirrored_high) == 0u {
+    let link = new_link();
+    if link != NONE {
         links[link] = vec2(h, atomicExchange(&heads[x], link + 1u));
     }
 }

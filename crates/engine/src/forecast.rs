@@ -9,7 +9,7 @@ use crate::buffers::with_headroom;
 use crate::records::{Candidate, Fan, Point};
 use crate::sizing::{Sizing, WORD, boundary_gaps, radii};
 use crate::{Error, Gpu};
-use surfine_points::{Boundary, GridShape, RefineParams, Vec3};
+use surfine_points::{GridShape, RefineParams, Vec3};
 
 const POINT: u64 = size_of::<Point>() as u64;
 /// Bytes of long rows for each point of the first step, where all have far too large radii: half as large again as fit,
@@ -51,7 +51,7 @@ impl Forecast {
         let input = records as u64;
         let sizes = points_by_level(records, params.levels);
         let mut needs = Needs { limit, buffers: vec![("points", POINT * input)] };
-        if params.levels > 0 && params.boundary != Boundary::None {
+        if params.levels > 0 {
             needs.reserve("boundary gaps", 4 * WORD * boundary_gaps(params, input));
         }
         for pair in sizes.windows(2) {

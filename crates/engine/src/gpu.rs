@@ -178,7 +178,10 @@ impl Gpu {
     }
 
     /// Waits for everything that was submitted.
-    pub(crate) fn wait(&self) -> Result<(), Error> {
+    ///
+    /// # Errors
+    /// The device was lost or took too long.
+    pub fn wait(&self) -> Result<(), Error> {
         self.poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(TIMEOUT) })
     }
 

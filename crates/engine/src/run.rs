@@ -7,7 +7,7 @@ use crate::curves::{self, Curves};
 use crate::forecast::check_step;
 use crate::records::{Counters, LEVEL_BITS, Params, Point};
 use crate::refiner::{GpuRefined, Refiner};
-use crate::sizing::boundary_gaps;
+use crate::sizing::{boundary_gaps, counted};
 use crate::step::{Step, constants};
 use surfine_features::{Cloud, Features, Records, check_marks, may_be_boundary};
 use surfine_points::{
@@ -264,7 +264,7 @@ impl Refiner {
         Ok(LevelReport {
             points_in: params.points as usize,
             points_out: params.points as usize + new as usize,
-            ball_neighbors: u64::from(ball_high) << 32 | u64::from(ball_low),
+            ball_neighbors: counted(ball_low, ball_high),
             ring_neighbors: u64::from(step.params.slots),
             classes,
             isolated: isolated as usize,

@@ -132,6 +132,7 @@ pub const SHADERS: &[Shader] = &[
     shader!("candidates", "math", "pn_triangle", "corners", "new_normal", "curves"),
     shader!(
         "selection_overlaps",
+        "links",
         "precedence",
         "priority",
         "cells",
@@ -146,7 +147,7 @@ pub const SHADERS: &[Shader] = &[
         "cut_loops"
     ),
     shader!("selection_contested", "cut_loops"),
-    shader!("selection_links", "precedence", "priority", "math", "same_side", "cut_loops"),
+    shader!("selection_links", "links", "precedence", "priority", "math", "same_side", "cut_loops"),
     shader!("selection_round"),
     shader!("selection", "shared_candidate", "state_of", "cut_loops"),
     shader!("selection_tail", "shared_candidate", "state_of", "cut_loops"),
@@ -154,7 +155,7 @@ pub const SHADERS: &[Shader] = &[
     shader!("selection_radii", "cover", "math", "cut_loops"),
     CONFLICTS[0],
     CONFLICTS[1],
-    shader!("conflicts_mirror", "cut_loops"),
+    shader!("conflicts_mirror", "links", "cut_loops"),
     shader!("coloring_order", "priority"),
     shader!("coloring_round", "priority"),
     shader!("coloring", "priority", "cut_loops"),

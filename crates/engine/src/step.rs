@@ -12,7 +12,7 @@ use crate::kernel::Kernel;
 use crate::records::{ARENA_BLOCK, Counters, Params};
 use crate::scan::Scan;
 use crate::shaders::SHADERS;
-use crate::sizing::{Sizing, WORD, words_of};
+use crate::sizing::{Sizing, WORD, counted, words_of};
 use crate::uniforms::Uniforms;
 use crate::{Error, Gpu};
 use surfine_points::{Neighborhood, RefineParams};
@@ -196,6 +196,21 @@ impl Step<'_> {
             return Err(Error::Limit { what, need, have, adapter: self.gpu.name.clone() });
         }
         Ok(need)
+    }
+
+    /// Whether there was room for all links; else makes it.
+    pub(crate) fn make_room_for_links(
+        &mut self,
+        what: &'static str,
+        counters: &Counters,
+    ) -> Result<bool, Error> {
+        let links = counted(counters.mirrored, counters.mirrored_high);
+        if links <= self.params.mirror_links.into() {
+            return Ok(true);
+        }
+        let bytes = self.countable(what, 2 * WORD, links)?;
+        self.buffers.mirror_links.reserve(self.gpu, bytes)?;
+        Ok(false)
     }
 
     pub(crate) fn cells(&self) -> u32 {

@@ -79,11 +79,7 @@ fn edge_normal(a: Corner, b: Corner, size: f32, rules: Rules) -> Vec3 {
 mod tests {
     use super::*;
     use crate::math::angle_between;
-
-    fn on_sphere(x: f32, y: f32, z: f32) -> Corner {
-        let n = Vec3::new(x, y, z).normalize();
-        Corner { position: n, normal: n }
-    }
+    use crate::pn_triangle::tests::on_sphere;
 
     #[test]
     fn slivers_with_noisy_normals_keep_sound_ones() {

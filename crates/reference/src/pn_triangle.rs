@@ -139,10 +139,10 @@ pub fn reach(corners: [Corner; 3], x: Vec3) -> f32 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
-    fn on_sphere(x: f32, y: f32, z: f32) -> Corner {
+    pub(crate) fn on_sphere(x: f32, y: f32, z: f32) -> Corner {
         let n = Vec3::new(x, y, z).normalize();
         Corner { position: n, normal: n }
     }

@@ -2,7 +2,7 @@
 
 use super::slices::Sliced;
 use std::time::{Duration, Instant};
-use surfine::{Error, Gpu, LevelReport, PointSet, RefineParams, Refined, Refiner, wgpu};
+use surfine::{Error, LevelReport, PointSet, RefineParams, Refined, Refiner};
 use surfine_points::add_stage_time;
 
 /// What is run, and how often it is measured.
@@ -68,7 +68,8 @@ pub(super) fn on_gpu(plan: &Plan<'_>, refiner: &mut Refiner) -> Result<Measured,
     let runs = timed(plan, "", || {
         let begin = Instant::now();
         let result = refiner.refine_on_device(plan.points, plan.params, &mut |_| ())?;
-        wait(refiner.gpu())?;
+        // The last commands may still run when a result that stays on the device is there.
+        refiner.gpu().wait()?;
         Ok::<_, Error>(run(begin, &result.reports))
     })?;
     let mut refined = Refined::default();
@@ -103,14 +104,6 @@ fn run(begin: Instant, reports: &[LevelReport]) -> Run {
         add_stage_time(&mut stages, stage, time);
     }
     Run { time, stages }
-}
-
-/// The last commands may still run when a result that stays on the device is there. The engine waits for a buffer: it
-/// knows what to do about a lost device.
-pub(super) fn wait(gpu: &Gpu) -> Result<(), Error> {
-    let (size, usage) = (wgpu::COPY_BUFFER_ALIGNMENT, wgpu::BufferUsages::MAP_READ);
-    let buffer = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
-    gpu.guarded(|| gpu.map(&gpu.device.create_buffer(&buffer)).map(|_| ()))
 }
 
 /// Milliseconds.

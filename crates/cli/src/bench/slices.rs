@@ -1,6 +1,6 @@
 //! Runs in slices, each slice timed until the device has finished it.
 
-use super::measure::{Plan, ms, wait};
+use super::measure::{Plan, ms};
 use serde::Serialize;
 use std::fmt::{self, Display, Formatter};
 use std::time::{Duration, Instant};
@@ -50,7 +50,7 @@ fn drive(run: &mut Slices, gpu: &Gpu, budget: Duration) -> Result<Vec<[Duration;
         let begin = Instant::now();
         let result = run.advance(budget)?;
         let call = begin.elapsed();
-        wait(gpu)?;
+        gpu.wait()?;
         times.push([call, begin.elapsed()]);
         if result.is_some() {
             return Ok(times);

@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::commands::Commands;
 use crate::records::Counters;
-use crate::sizing::{WORD, counted, items_of, words_of};
+use crate::sizing::{WORD, items_of, words_of};
 use crate::step::Step;
 use std::ops::Range;
 
@@ -28,10 +28,7 @@ impl Step<'_> {
             self.sort_by_priority().await?;
             let mut round = RANGES + self.sizing.rounds;
             let (mut counters, mut left) = self.run_rounds(0..round).await?;
-            let links = counted(counters.mirrored, counters.mirrored_high);
-            if links > self.params.mirror_links.into() {
-                let bytes = self.countable("links of conflicts", 2 * WORD, links)?;
-                self.buffers.mirror_links.reserve(self.gpu, bytes)?;
+            if !self.make_room_for_links("links of conflicts", &counters)? {
                 continue;
             }
             while left > 0 {

@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::commands::Commands;
 use crate::records::Counters;
-use crate::sizing::{WORD, counted, items_of, radii, words_of};
+use crate::sizing::{WORD, items_of, radii, words_of};
 use crate::step::Step;
 use std::ops::Range;
 
@@ -35,10 +35,7 @@ impl Step<'_> {
             let each = self.sizing.rounds.min(ROUNDS);
             let mut rounds = first..first + each;
             let (counters, mut left) = self.run_selection(rounds.clone()).await?;
-            let links = counted(counters.mirrored, counters.mirrored_high);
-            if links > self.params.mirror_links.into() {
-                let bytes = self.countable("links between candidates", 2 * WORD, links)?;
-                self.buffers.mirror_links.reserve(self.gpu, bytes)?;
+            if !self.make_room_for_links("links between candidates", &counters)? {
                 continue;
             }
             while left > 0 {
